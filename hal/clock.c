@@ -1,0 +1,70 @@
+#define _GNU_SOURCE
+
+#include "hal/clock.h"
+
+#include <errno.h>
+#include <sched.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+static int64_t now_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+void mct_clock_start(mct_clock *clock, double period)
+{
+    const struct sched_param priority = {.sched_priority = 80};
+    memset(clock, 0, sizeof *clock);
+    clock->has_memory = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+    clock->has_priority = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
+    clock->period_ns = (int64_t)(period * 1e9 + 0.5);
+    clock->woke_ns = now_ns();
+    clock->deadline_ns = clock->woke_ns + clock->period_ns;
+}
+
+static uint32_t microseconds(int64_t ns)
+{
+    const int64_t us = ns / 1000;
+    return us < 0 ? 0 : us > UINT32_MAX ? UINT32_MAX : (uint32_t)us;
+}
+
+static void account(mct_timing *timing, int64_t late_ns)
+{
+    int bin = 0;
+    timing->latest_us = microseconds(late_ns);
+    for (uint32_t us = timing->latest_us; us > 0 && bin < 31; us >>= 1) {
+        bin++;
+    }
+    timing->lateness[bin]++;
+    if (timing->latest_us > timing->worst_us) {
+        timing->worst_us = timing->latest_us;
+    }
+}
+
+void mct_clock_wait(mct_clock *clock)
+{
+    mct_timing *timing = &clock->timing;
+    const int64_t done = now_ns();
+    const uint32_t work_us = microseconds(done - clock->woke_ns);
+    if (work_us > timing->worst_work_us) {
+        timing->worst_work_us = work_us;
+    }
+    if (done > clock->deadline_ns) {
+        const int64_t missed = (done - clock->deadline_ns) / clock->period_ns + 1;
+        timing->missed_ticks += (uint64_t)missed;
+        clock->deadline_ns += missed * clock->period_ns;
+    }
+    const struct timespec deadline = {.tv_sec = clock->deadline_ns / 1000000000,
+                                      .tv_nsec = (long)(clock->deadline_ns % 1000000000)};
+    int status = EINTR;
+    for (int tries = 0; status == EINTR && tries < 100; tries++) {
+        status = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL);
+    }
+    clock->woke_ns = now_ns();
+    account(timing, clock->woke_ns - clock->deadline_ns);
+    clock->deadline_ns += clock->period_ns;
+}

@@ -1,0 +1,33 @@
+/**
+ * @file clock.h
+ * A periodic clock on CLOCK_MONOTONIC with absolute deadlines, and how well they were met.
+ */
+#ifndef MCTAU_HAL_CLOCK_H
+#define MCTAU_HAL_CLOCK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/hal.h"
+
+typedef struct {
+    int64_t period_ns;
+    int64_t deadline_ns; /**< of the next tick */
+    int64_t woke_ns;     /**< when the present tick began */
+    bool has_priority;   /**< SCHED_FIFO was granted */
+    bool has_memory;     /**< mlockall was granted */
+    mct_timing timing;
+} mct_clock;
+
+/**
+ * Starts the clock at the present time. Asks for SCHED_FIFO and locked memory; goes on without where they are not allowed
+ * (see has_priority, has_memory).
+ */
+void mct_clock_start(mct_clock *clock, double period);
+
+/**
+ * Sleeps until the next deadline. Deadlines that have passed already are skipped and counted, never caught up.
+ */
+void mct_clock_wait(mct_clock *clock);
+
+#endif

@@ -1,0 +1,50 @@
+/**
+ * @file sim.h
+ * The simulated HAL: a plant behind encoders and a motor driver, in lockstep with the loop or in real time.
+ *
+ * Sensors: incremental encoders that count from the plant's initial position, with noise, a limited counter, latency and
+ * faults on request. The clock: in lockstep wait_tick advances the plant at once; in real time it also sleeps until the tick.
+ */
+#ifndef MCTAU_HAL_SIM_H
+#define MCTAU_HAL_SIM_H
+
+#include "hal/clock.h"
+#include "hal/hal.h"
+#include "mctau/plant.h"
+
+#define MCT_MAX_LATENCY 16 /**< ticks */
+
+typedef struct {
+    mct_plant plant;
+    /* sensors */
+    double turn_counts[MCT_MAX_COORDINATES];   /**< counts per turn or metre */
+    double unit_counts[MCT_MAX_COORDINATES];   /**< counts per radian or metre */
+    double start_counts[MCT_MAX_COORDINATES];  /**< at the initial position */
+    double noise;                              /**< standard deviation [counts] */
+    uint32_t seed;
+    uint32_t counter_shift;                    /**< 32 - bits of the counters */
+    uint32_t latency;                          /**< [ticks] */
+    uint32_t tick_us;
+    int32_t fault;                             /**< MCT_SENSOR_FAULT_... */
+    uint64_t fault_begin, fault_end;           /**< [ticks] */
+    mct_reading queue[MCT_MAX_LATENCY + 1];    /**< readings of the last ticks, by tick modulo the size */
+    mct_reading last;                          /**< last delivered */
+    uint32_t silent_ticks;                     /**< since something was delivered */
+    /* motor driver */
+    mct_real input;                            /**< held until the next write */
+    /* clock */
+    bool realtime;
+    double dt;
+    mct_clock clock;
+} mct_sim;
+
+/**
+ * Prepares the plant and its sensors. With [variation] the plant differs from the scene's model.
+ * @return MCT_OK, or what mct_plant_init says, with a sentence in `why`
+ */
+mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why);
+
+/** The HAL of a simulation; `sim` must outlive it. */
+mct_hal mct_sim_hal(mct_sim *sim);
+
+#endif

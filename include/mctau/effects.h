@@ -1,0 +1,39 @@
+/**
+ * @file effects.h
+ * Effects: what a scene may switch on or leave out. One bit has one meaning across all systems.
+ *
+ * A right-hand side is written once over a literal mask; the compiler removes what is off. The low bits
+ * (MCT_KERNEL_EFFECTS) select a kernel; the others act once a tick, outside of it.
+ */
+#ifndef MCTAU_EFFECTS_H
+#define MCTAU_EFFECTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    MCT_GRAVITY = 1 << 0,            /**< weight of every particle */
+    MCT_VISCOUS = 1 << 1,            /**< friction torque or force proportional to a coordinate's rate */
+    MCT_COULOMB = 1 << 2,            /**< dry friction of constant size, with sticking (Moreau's impulse clamp) */
+    MCT_MOTOR_QUASI_STATIC = 1 << 3, /**< DC motor with L = 0: the input is a voltage, the current follows at once */
+    MCT_MOTOR_INDUCTIVE = 1 << 4,    /**< DC motor with L di/dt = V - R i - k w: the current is a state */
+    MCT_SATURATION = 1 << 5          /**< the supply bounds the voltage */
+};
+#define MCT_MOTOR (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
+#define MCT_KERNEL_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR)
+#define MCT_KERNEL_MASKS 32 /**< kernel masks lie below this; those with both motors are empty */
+
+/** One effect as a scene names it. `bits` lists the mask of each choice; a switch has the choices false and true. */
+typedef struct {
+    const char *name;
+    const char *doc;
+    uint32_t mask;              /**< all bits that belong to the effect */
+    const char *const *choices; /**< NULL for a switch */
+    uint32_t bits[3];           /**< mask by choice (false/true for a switch) */
+} mct_effect;
+
+#define MCT_EFFECT_COUNT 5
+/** All effects, in the order in which they are listed. */
+extern const mct_effect mct_effects[MCT_EFFECT_COUNT];
+
+#endif

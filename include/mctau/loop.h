@@ -1,0 +1,45 @@
+/**
+ * @file loop.h
+ * The tick: read -> estimate -> control -> supervise -> write -> record -> wait.
+ */
+#ifndef MCTAU_LOOP_H
+#define MCTAU_LOOP_H
+
+#include "hal/hal.h"
+#include "mctau/controller.h"
+#include "mctau/input.h"
+#include "mctau/record.h"
+#include "mctau/scene.h"
+#include "mctau/supervisor.h"
+
+typedef struct {
+    mct_hal hal;
+    mct_ring *ring; /**< NULL: records go nowhere */
+    bool controlled;
+    uint64_t tick;
+    mct_real applied; /**< input since the last tick [V] */
+    mct_input input;
+    mct_controller controller;
+    mct_supervisor supervisor;
+    mct_record record; /**< of the last tick */
+} mct_loop;
+
+/**
+ * Prepares a loop; opens nothing.
+ * @param scene    read during the call only
+ * @param hal      open before the first tick, close after the last
+ * @param ring     where records go, or NULL
+ * @param samples  of a csv input, else {NULL, 0}
+ * @param why      a sentence on failure
+ * @return MCT_OK, or what mct_controller_init says
+ */
+mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring, mct_samples samples,
+                         mct_message *why);
+
+/**
+ * One tick, ending where the next begins. A HAL that cannot read or write latches MCT_FAULT_HAL; the loop goes on at zero
+ * volts. Bounded work but for the HAL's wait_tick. Cost on a laptop, plant included: below 400 ns.
+ */
+void mct_loop_tick(mct_loop *loop);
+
+#endif

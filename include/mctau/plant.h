@@ -1,0 +1,52 @@
+/**
+ * @file plant.h
+ * A simulated mechanism: one kernel, its constants and a state.
+ */
+#ifndef MCTAU_PLANT_H
+#define MCTAU_PLANT_H
+
+#include "mctau/constants.h"
+#include "mctau/message.h"
+#include "mctau/scene.h"
+#include "mctau/stepper.h"
+#include "mctau/system.h"
+
+#define MCT_STATE_BOUND MCT_R(1e9) /**< a state beyond this, in SI units, has blown up */
+
+typedef struct {
+    const mct_system *system;
+    mct_kernel kernel;
+    uint32_t effects; /**< as simulated, see mct_scene_effects */
+    int32_t substeps; /**< steps per tick */
+    mct_real bound;   /**< largest input [V]; without saturation the largest finite number */
+    mct_real input;   /**< as applied over the last tick */
+    mct_state state;
+    uint64_t tick;
+    uint64_t rejected_inputs; /**< inputs that were not finite: the last valid one was held */
+    uint64_t diverged_ticks;  /**< ticks whose result was not finite or beyond MCT_STATE_BOUND: the state before was kept */
+    mct_constants constants;
+} mct_plant;
+
+/**
+ * Prepares a plant at the scene's initial state: constants in double, kernel chosen.
+ * @param why  a sentence on failure
+ * @return MCT_OK; MCT_ERROR_UNSUITED when the stepper does not suit system and effects; else what prepare says
+ */
+mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message *why);
+
+/**
+ * Advances by one tick under a held input. An input that is not finite is refused and the last one held; a result that is
+ * not finite or has blown up is refused and the state kept. Both are counted. Cost: the kernel, and some 5 ns. Not thread-safe per plant.
+ */
+void mct_plant_step(mct_plant *plant, mct_real input);
+
+/** Value of state `index` in double, whole turns included. */
+double mct_plant_value(const mct_plant *plant, int index);
+
+/** M, C, tau and all that follows, at the present state under the present input. */
+void mct_plant_evaluate(const mct_plant *plant, mct_evaluation *out);
+
+/** Sets a state from values in double, taking whole turns out of angles. */
+void mct_state_set(const mct_system *system, int states, const double *values, mct_state *state);
+
+#endif

@@ -1,0 +1,98 @@
+#include "mctau/observer.h"
+
+#include <string.h>
+
+#include "mctau/matrix.h"
+
+#define PI 3.141592653589793238463
+#define TURN (2 * PI)
+
+void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct_constants *constants)
+{
+    const mct_system *system = mct_systems[scene->system];
+    memset(observer, 0, sizeof *observer);
+    observer->system = system;
+    observer->constants = constants;
+    observer->effects = mct_scene_effects(scene);
+    observer->counter_shift = (uint32_t)(32 - scene->counter_bits);
+    observer->h = (mct_real)scene->dt;
+    const double exponent = -scene->observer_bandwidth * scene->dt;
+    double pole_less_one = -1; /* a bandwidth beyond expm1's reach forgets at once */
+    if (mct_expm1(1, &exponent, &pole_less_one) != MCT_OK) {
+        pole_less_one = -1;
+    }
+    observer->keep = (mct_real)((1 + pole_less_one) * (1 + pole_less_one));
+    observer->rate_gain = (mct_real)(pole_less_one * pole_less_one / scene->dt);
+    for (int i = 0; i < system->coordinate_count; i++) {
+        mct_encoder_track *track = &observer->encoders[i];
+        const bool angle = system->coordinates[i].is_angle;
+        const double counts = scene->counts_per_unit[i];
+        track->turn = angle ? (int32_t)(counts + 0.5) : 0;
+        track->unit = (mct_real)(angle ? TURN / track->turn : 1 / counts);
+        double start = scene->initial[i];
+        if (angle) {
+            start -= TURN * (double)(int32_t)(start / TURN);
+        }
+        track->start = (mct_real)start;
+        observer->x[i] = (mct_real)start;
+    }
+}
+
+/* Counts moved since the last tick, modulo the counter's range. */
+static int32_t counts_moved(const mct_encoder_track *track, int32_t counts, uint32_t shift)
+{
+    const uint32_t difference = ((uint32_t)counts - (uint32_t)track->last) << shift;
+    int32_t moved;
+    memcpy(&moved, &difference, sizeof moved);
+    return shift == 0 ? moved : moved / (int32_t)(1u << shift); /* exact: the low bits are zero */
+}
+
+/* Within +-pi, from within +-(2 pi + pi). */
+static mct_real wrapped(mct_real angle)
+{
+    const mct_real turns = angle > MCT_R(3 * PI) ? MCT_R(2 * TURN) : angle > MCT_R(PI) ? MCT_R(TURN) : 0;
+    const mct_real back = angle < MCT_R(-3 * PI) ? MCT_R(2 * TURN) : angle < MCT_R(-PI) ? MCT_R(TURN) : 0;
+    return angle - turns + back;
+}
+
+void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct_real input)
+{
+    const int n = observer->system->coordinate_count;
+    const mct_real h = observer->h;
+    const bool valid = reading->flags == 0;
+    if (!observer->started) {
+        if (valid) {
+            for (int i = 0; i < n; i++) {
+                observer->encoders[i].last = reading->counts[i];
+            }
+            observer->started = true;
+        }
+        return;
+    }
+    mct_real a[MCT_MAX_COORDINATES];
+    observer->system->accelerate(observer->constants, observer->effects, observer->x, input, a);
+    for (int i = 0; i < n; i++) {
+        mct_encoder_track *track = &observer->encoders[i];
+        mct_real *rate = &observer->x[n + i];
+        const mct_real model_moved = h * *rate + MCT_R(0.5) * h * h * a[i];
+        *rate += h * a[i];
+        if (!valid) {
+            track->deviation -= model_moved; /* the count stood still: the model goes on alone */
+            observer->correction[i] = 0;
+        } else {
+            const int32_t moved = counts_moved(track, reading->counts[i], observer->counter_shift);
+            track->last = reading->counts[i];
+            track->travelled += moved;
+            if (track->turn != 0) {
+                track->travelled %= track->turn;
+            }
+            const mct_real deviation = track->deviation + ((mct_real)moved * track->unit - model_moved);
+            track->deviation = observer->keep * deviation;
+            *rate += observer->rate_gain * deviation;
+            observer->correction[i] = observer->rate_gain * deviation / h;
+        }
+        const mct_real measured = track->start + (mct_real)track->travelled * track->unit;
+        const mct_real position = measured - track->deviation;
+        observer->x[i] = track->turn != 0 ? wrapped(position) : position;
+    }
+}

@@ -1,0 +1,65 @@
+#include "mctau/loop.h"
+
+#include <string.h>
+
+mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring, mct_samples samples,
+                         mct_message *why)
+{
+    memset(loop, 0, sizeof *loop);
+    loop->hal = hal;
+    loop->ring = ring;
+    loop->controlled = scene->controller != MCT_CONTROLLER_NONE;
+    mct_input_init(&loop->input, scene, samples);
+    mct_supervisor_init(&loop->supervisor, scene);
+    return loop->controlled ? mct_controller_init(&loop->controller, scene, why) : MCT_OK;
+}
+
+/* Fills the record of this tick but for what the HAL alone knows. */
+static void observe_hal(mct_loop *loop, mct_record *record)
+{
+    const mct_state *plant = loop->hal.ops->plant(loop->hal.context);
+    const mct_timing *timing = loop->hal.ops->timing(loop->hal.context);
+    if (plant != NULL) {
+        record->plant = *plant;
+    }
+    record->late_us = timing->latest_us;
+    if (loop->ring != NULL) {
+        record->dropped = loop->ring->dropped;
+    }
+}
+
+void mct_loop_tick(mct_loop *loop)
+{
+    const mct_hal_ops *hal = loop->hal.ops;
+    mct_supervisor *supervisor = &loop->supervisor;
+    mct_record *record = &loop->record;
+    record->tick = loop->tick;
+    observe_hal(loop, record);
+    if (hal->read(loop->hal.context, &record->reading) != MCT_OK) {
+        record->reading.flags |= MCT_READING_MISSING;
+        mct_supervisor_fault(supervisor, MCT_FAULT_HAL);
+    }
+    const mct_real *estimate = NULL;
+    if (loop->controlled) {
+        record->wanted = mct_controller_update(&loop->controller, &record->reading, loop->applied);
+        record->mode = loop->controller.mode;
+        estimate = loop->controller.observer.x;
+        memcpy(record->estimate, estimate, sizeof record->estimate);
+    } else {
+        record->wanted = mct_input_at(&loop->input, loop->tick);
+    }
+    record->applied = mct_supervisor_pass(supervisor, &record->reading, estimate, record->wanted);
+    if (hal->write(loop->hal.context, record->applied) != MCT_OK) {
+        mct_supervisor_fault(supervisor, MCT_FAULT_HAL);
+        hal->stop(loop->hal.context);
+    }
+    loop->applied = record->applied;
+    record->faults = supervisor->latched;
+    if (loop->ring != NULL) {
+        mct_ring_push(loop->ring, record);
+    }
+    loop->tick++;
+    if (hal->wait_tick(loop->hal.context) != MCT_OK) {
+        mct_supervisor_fault(supervisor, MCT_FAULT_HAL);
+    }
+}

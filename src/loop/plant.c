@@ -1,0 +1,112 @@
+#include "mctau/plant.h"
+
+#include <string.h>
+
+#include "mctau/compensated.h"
+
+#define TURN 6.283185307179586476925
+/* A whole turn as the nearest mct_real and the rest, so that taking one out is exact to twice the precision. */
+static const mct_real turn = MCT_R(TURN);
+#if MCT_REAL_IS_FLOAT
+static const mct_real turn_rest = -1.7484555e-07F;
+#else
+static const mct_real turn_rest = 2.4492935982947064e-16;
+#endif
+
+static bool is_finite(mct_real value)
+{
+    return value - value == 0;
+}
+
+/* Finite, and within what any mechanism can do in a tick; false for NaN. */
+static bool is_sane(const mct_state *state)
+{
+    bool sane = true;
+    MCT_UNROLL
+    for (int i = 0; i < MCT_MAX_STATES; i++) {
+        sane &= state->x[i] <= MCT_STATE_BOUND && state->x[i] >= -MCT_STATE_BOUND;
+    }
+    return sane;
+}
+
+/* Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone. */
+static void take_turns(mct_state *state, int i)
+{
+    const mct_real x = state->x[i];
+    if (x <= turn && x >= -turn) {
+        return;
+    }
+    const int32_t turns = (int32_t)(x / turn);
+    const mct_real back = (mct_real)turns;
+    state->turns[i] += turns;
+    state->c[i] -= back * turn_rest;
+    mct_add_compensated(&state->x[i], &state->c[i], -back * turn);
+}
+
+void mct_state_set(const mct_system *system, int states, const double *values, mct_state *state)
+{
+    memset(state, 0, sizeof *state);
+    for (int i = 0; i < states; i++) {
+        double value = values[i];
+        if (i < system->coordinate_count && system->coordinates[i].is_angle) {
+            state->turns[i] = (int32_t)(value / TURN);
+            value -= state->turns[i] * TURN;
+        }
+        state->x[i] = (mct_real)value;
+        state->c[i] = (mct_real)(value - (double)state->x[i]);
+    }
+}
+
+mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message *why)
+{
+    memset(plant, 0, sizeof *plant);
+    plant->system = mct_systems[scene->system];
+    plant->effects = mct_scene_effects(scene);
+    plant->kernel = plant->system->kernel(scene->stepper, plant->effects);
+    if (plant->kernel == NULL) {
+        mct_message_add(why, "scene.stepper: found ");
+        mct_message_add(why, mct_steppers[scene->stepper].name);
+        mct_message_add(why, ", which does not suit ");
+        mct_message_add(why, plant->system->name);
+        return MCT_ERROR_UNSUITED;
+    }
+    const bool bounded = (plant->effects & MCT_SATURATION) && (plant->effects & MCT_MOTOR);
+    plant->substeps = scene->substeps;
+    plant->bound = bounded ? (mct_real)scene->parameters[plant->system->supply_parameter] : MCT_REAL_MAX;
+    mct_state_set(plant->system, mct_state_count(plant->system, plant->effects), scene->initial, &plant->state);
+    return plant->system->prepare(scene, scene->dt / scene->substeps, &plant->constants, why);
+}
+
+void mct_plant_step(mct_plant *plant, mct_real input)
+{
+    if (is_finite(input)) {
+        plant->input = input > plant->bound ? plant->bound : input < -plant->bound ? -plant->bound : input;
+    } else {
+        plant->rejected_inputs++;
+    }
+    mct_state next = plant->state;
+    plant->kernel(&plant->constants, &next, plant->input, plant->substeps);
+    if (is_sane(&next)) {
+        plant->state = next;
+        for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
+            if (plant->system->coordinates[i].is_angle) {
+                take_turns(&plant->state, i);
+            }
+        }
+    } else {
+        plant->diverged_ticks++;
+    }
+    plant->tick++;
+}
+
+double mct_plant_value(const mct_plant *plant, int index)
+{
+    const mct_state *state = &plant->state;
+    const double within = (double)state->x[index] + (double)state->c[index];
+    return index < plant->system->coordinate_count ? within + state->turns[index] * TURN : within;
+}
+
+void mct_plant_evaluate(const mct_plant *plant, mct_evaluation *out)
+{
+    plant->system->evaluate(&plant->constants, plant->effects, plant->state.x, plant->input, out);
+}

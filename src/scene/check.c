@@ -1,0 +1,413 @@
+#include "check.h"
+
+#include "mctau/stepper.h"
+#include "text.h"
+
+/* --- sentences --- */
+
+void mct_message_add_unit(mct_message *message, const mct_field *field)
+{
+    if (field->unit[0] != '\0') {
+        mct_message_add(message, " ");
+        mct_message_add(message, field->unit);
+    }
+}
+
+static void add_bound(mct_message *message, const mct_field *field, double bound)
+{
+    if (field->kind == MCT_FIELD_INTEGER) {
+        mct_message_add_integer(message, (long long)bound);
+    } else {
+        mct_message_add_number(message, bound);
+    }
+}
+
+/* Adds ", " ahead of all names but the first. */
+static void add_name(mct_message *message, const char *name, int *count)
+{
+    mct_message_add(message, *count > 0 ? ", " : "");
+    mct_message_add(message, name);
+    ++*count;
+}
+
+void mct_message_add_allowed(mct_message *message, const mct_scene_key *key, const mct_system *system)
+{
+    const mct_field *const field = &key->field;
+    int count = 0;
+    switch (field->kind) {
+    case MCT_FIELD_BOOLEAN:
+        mct_message_add(message, key->effect != NULL && (key->effect->mask & ~system->effects) ? "false" : "true or false");
+        break;
+    case MCT_FIELD_CHOICE:
+        for (int32_t i = 0; mct_choice_name(field, i) != NULL; i++) {
+            if (key->effect == NULL || !(key->effect->bits[i] & ~system->effects)) {
+                add_name(message, mct_choice_name(field, i), &count);
+            }
+        }
+        break;
+    case MCT_FIELD_TEXT:
+        mct_message_add(message, "a text of at most ");
+        mct_message_add_integer(message, (long long)field->maximum - 1);
+        mct_message_add(message, " bytes");
+        break;
+    case MCT_FIELD_LIST:
+        mct_message_add(message, "at most ");
+        mct_message_add_integer(message, MCT_MAX_LIST);
+        mct_message_add(message, " numbers from ");
+        /* fall through */
+    case MCT_FIELD_REAL:
+    case MCT_FIELD_INTEGER:
+        add_bound(message, field, field->minimum);
+        mct_message_add(message, " to ");
+        add_bound(message, field, field->maximum);
+        mct_message_add_unit(message, field);
+        break;
+    }
+}
+
+/* --- single keys --- */
+
+bool mct_field_allows(const mct_field *field, double value)
+{
+    return value >= field->minimum && value <= field->maximum; /* a NaN is neither */
+}
+
+static mct_status refuse_number(const mct_scene_key *key, const mct_system *system, double value, mct_message *sentence)
+{
+    mct_message_add(sentence, "found ");
+    mct_message_add_number(sentence, value);
+    mct_message_add_unit(sentence, &key->field);
+    mct_message_add(sentence, "; allowed ");
+    mct_message_add_allowed(sentence, key, system);
+    return MCT_ERROR_RANGE;
+}
+
+static mct_status examine_list(const mct_scene_key *key, const mct_system *system, const mct_list *list,
+                               mct_message *sentence)
+{
+    if (list->count < 0 || list->count > MCT_MAX_LIST) {
+        mct_message_add(sentence, "found ");
+        mct_message_add_integer(sentence, list->count);
+        mct_message_add(sentence, " numbers; allowed ");
+        mct_message_add_allowed(sentence, key, system);
+        return MCT_ERROR_BOUND;
+    }
+    for (int32_t i = 0; i < list->count; i++) {
+        if (!mct_field_allows(&key->field, list->values[i])) {
+            return refuse_number(key, system, list->values[i], sentence);
+        }
+    }
+    return MCT_OK;
+}
+
+static mct_status examine_key(const mct_scene *scene, const mct_scene_key *key, const mct_system *system,
+                              mct_message *sentence)
+{
+    const mct_field *const field = &key->field;
+    const char *const place = (const char *)scene + field->offset;
+    switch (field->kind) {
+    case MCT_FIELD_TEXT: {
+        size_t length = 0;
+        while (length < (size_t)field->maximum && place[length] != '\0') {
+            length++;
+        }
+        if (length == (size_t)field->maximum) {
+            mct_message_add(sentence, "found a text without an end; allowed ");
+            mct_message_add_allowed(sentence, key, system);
+            return MCT_ERROR_BOUND;
+        }
+        return MCT_OK;
+    }
+    case MCT_FIELD_LIST:
+        return examine_list(key, system, (const mct_list *)(const void *)place, sentence);
+    case MCT_FIELD_CHOICE: {
+        const double index = mct_key_get(scene, key);
+        return mct_choice_name(field, (int32_t)index) != NULL ? MCT_OK
+                                                              : refuse_number(key, system, index, sentence);
+    }
+    case MCT_FIELD_BOOLEAN: {
+        const double value = mct_key_get(scene, key);
+        return value == 0 || value == 1 ? MCT_OK : refuse_number(key, system, value, sentence);
+    }
+    case MCT_FIELD_REAL:
+    case MCT_FIELD_INTEGER:
+        break;
+    }
+    const double value = mct_key_get(scene, key);
+    return mct_field_allows(field, value) ? MCT_OK : refuse_number(key, system, value, sentence);
+}
+
+static mct_status examine_keys(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                               mct_message *sentence)
+{
+    for (int table = 0; table < MCT_TABLE_COUNT; table++) {
+        for (int i = 0; i < mct_key_count(table, system); i++) {
+            const mct_scene_key key = mct_key_at(table, system, i);
+            const mct_status status = key.effect != NULL ? MCT_OK : examine_key(scene, &key, system, sentence);
+            if (status != MCT_OK) {
+                blame->table = mct_table_name(table);
+                blame->key = key.field.name;
+                return status;
+            }
+        }
+    }
+    return MCT_OK;
+}
+
+/* --- keys together --- */
+
+static mct_status examine_effects(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                                  mct_message *sentence)
+{
+    blame->table = "effects";
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        const mct_scene_key key = mct_key_at(MCT_TABLE_EFFECTS, system, i);
+        const uint32_t bits = scene->effects & key.effect->mask;
+        const bool is_choice = bits == key.effect->bits[0] || bits == key.effect->bits[1] || bits == key.effect->bits[2];
+        if (!is_choice || (bits & ~system->effects)) {
+            blame->key = key.field.name;
+            mct_message_add(sentence, is_choice ? "found what " : "found more than one; ");
+            mct_message_add(sentence, is_choice ? system->name : "");
+            mct_message_add(sentence, is_choice ? " has not; allowed " : "allowed ");
+            mct_message_add_allowed(sentence, &key, system);
+            return is_choice ? MCT_ERROR_UNSUITED : MCT_ERROR_RANGE;
+        }
+    }
+    uint32_t known = 0;
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        known |= mct_effects[i].mask;
+    }
+    if (scene->effects & ~known) {
+        blame->key = "*";
+        mct_message_add(sentence, "found bits that no effect has");
+        return MCT_ERROR_RANGE;
+    }
+    return MCT_OK;
+}
+
+/* "gravity, viscous, motor = inductive" */
+static void add_effects(mct_message *sentence, uint32_t effects)
+{
+    int count = 0;
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        const mct_effect *const effect = &mct_effects[i];
+        const uint32_t bits = effects & effect->mask & MCT_KERNEL_EFFECTS;
+        if (bits == 0) {
+            continue;
+        }
+        add_name(sentence, effect->name, &count);
+        for (int choice = 1; effect->choices != NULL && choice < 3; choice++) {
+            if (effect->bits[choice] == bits) {
+                mct_message_add(sentence, " = ");
+                mct_message_add(sentence, effect->choices[choice]);
+            }
+        }
+    }
+    if (count == 0) {
+        mct_message_add(sentence, "no effects");
+    }
+}
+
+static void add_suitable_steppers(const mct_scene *scene, mct_message *sentence)
+{
+    int count = 0;
+    for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+        if (mct_stepper_suits(scene, i)) {
+            add_name(sentence, mct_steppers[i].name, &count);
+        }
+    }
+    mct_message_add(sentence, count > 0 ? "" : "none");
+}
+
+/* The largest number of three digits that does not exceed a positive value. */
+static double round_down(double value)
+{
+    double unit = 1;
+    for (int i = 0; i < 40 && value / unit >= 1000; i++) {
+        unit *= 10;
+    }
+    for (int i = 0; i < 40 && value / unit < 100; i++) {
+        unit /= 10;
+    }
+    return (int)(value / unit) * unit;
+}
+
+static mct_status examine_stepper(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                                  mct_message *sentence)
+{
+    if (mct_stepper_suits(scene, scene->stepper)) {
+        return MCT_OK;
+    }
+    const mct_stepper *const stepper = &mct_steppers[scene->stepper];
+    const uint32_t effects = mct_scene_effects(scene);
+    blame->table = "scene";
+    blame->key = "stepper";
+    mct_message_add(sentence, "found ");
+    mct_message_add(sentence, stepper->name);
+    if (system->kernel(scene->stepper, effects & MCT_KERNEL_EFFECTS) == NULL) {
+        mct_message_add(sentence, ", which does not suit ");
+        mct_message_add(sentence, system->name);
+        mct_message_add(sentence, " with ");
+        add_effects(sentence, effects);
+        mct_message_add(sentence, "; allowed ");
+        add_suitable_steppers(scene, sentence);
+        return MCT_ERROR_UNSUITED;
+    }
+
+    const double stiffness = mct_motor_stiffness(scene);
+    const double limit = stepper->motor_stability_limit;
+    const double longest_tick = round_down(scene->dt / stiffness * limit);
+    const double substeps = scene->substeps * (stiffness / limit);
+    mct_message_add(sentence, ", which follows an inductive motor up to h R/L = ");
+    mct_message_add_number(sentence, limit);
+    mct_message_add(sentence, "; at h = ");
+    mct_message_add_number(sentence, scene->dt / scene->substeps);
+    mct_message_add(sentence, " s it is ");
+    mct_message_add_number(sentence, stiffness);
+    mct_message_add(sentence, "; allowed ");
+    add_suitable_steppers(scene, sentence);
+    for (int i = 0; i < mct_key_count(0, system); i++) {
+        const mct_scene_key key = mct_key_at(0, system, i);
+        if (mct_text_equal(key.field.name, "substeps") && substeps < key.field.maximum) {
+            mct_message_add(sentence, ", or scene.substeps from ");
+            mct_message_add_integer(sentence, (long long)substeps + 1);
+        }
+        if (mct_text_equal(key.field.name, "dt") && longest_tick >= key.field.minimum) {
+            mct_message_add(sentence, ", or scene.dt up to ");
+            mct_message_add_number(sentence, longest_tick);
+            mct_message_add(sentence, " s");
+        }
+    }
+    return MCT_ERROR_UNSUITED;
+}
+
+static mct_status examine_controller(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
+{
+    if (scene->controller == MCT_CONTROLLER_NONE) {
+        return MCT_OK;
+    }
+    blame->table = "controller";
+    blame->key = "kind";
+    if (!(scene->effects & MCT_MOTOR)) {
+        mct_message_add(sentence, "found a controller, which gives a voltage, with effects.motor = off; "
+                                  "allowed with quasi_static or inductive");
+        return MCT_ERROR_UNSUITED;
+    }
+    if (scene->input != MCT_INPUT_NONE) {
+        mct_message_add(sentence, "found a controller together with an open-loop [input]; allowed one of them, "
+                                  "the other's kind being none");
+        return MCT_ERROR_UNSUITED;
+    }
+    return MCT_OK;
+}
+
+bool mct_input_reads(int32_t kind, const char *key)
+{
+    static const struct {
+        int32_t kind;
+        const char *key;
+    } readers[] = {
+        {MCT_INPUT_CONSTANT, "value"}, {MCT_INPUT_SINE, "value"},  {MCT_INPUT_SINE, "amplitude"},
+        {MCT_INPUT_SINE, "frequency"}, {MCT_INPUT_STEPS, "times"}, {MCT_INPUT_STEPS, "values"},
+        {MCT_INPUT_CSV, "file"},       {MCT_INPUT_CSV, "column"},
+    };
+    bool reads = mct_text_equal(key, "kind");
+    for (size_t i = 0; i < sizeof readers / sizeof readers[0]; i++) {
+        reads = reads || (readers[i].kind == kind && mct_text_equal(readers[i].key, key));
+    }
+    return reads;
+}
+
+static mct_status examine_input(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
+{
+    const mct_list *const times = &scene->input_times;
+    const mct_list *const values = &scene->input_values;
+    blame->table = "input";
+    if (scene->input == MCT_INPUT_CSV && (scene->input_file[0] == '\0' || scene->input_column[0] == '\0')) {
+        blame->key = scene->input_file[0] == '\0' ? "file" : "column";
+        mct_message_add(sentence, "found none; an input of kind csv needs a file and the name of a column");
+        return MCT_ERROR_UNSUITED;
+    }
+    if (scene->input != MCT_INPUT_STEPS) {
+        return MCT_OK;
+    }
+    blame->key = "times";
+    if (times->count == 0 || times->count != values->count) {
+        mct_message_add(sentence, "found ");
+        mct_message_add_integer(sentence, times->count);
+        mct_message_add(sentence, " times and ");
+        mct_message_add_integer(sentence, values->count);
+        mct_message_add(sentence, " values; allowed equally many, at least one");
+        return MCT_ERROR_UNSUITED;
+    }
+    for (int32_t i = 1; i < times->count; i++) {
+        if (!(times->values[i] > times->values[i - 1])) {
+            mct_message_add(sentence, "found ");
+            mct_message_add_number(sentence, times->values[i]);
+            mct_message_add(sentence, " s behind ");
+            mct_message_add_number(sentence, times->values[i - 1]);
+            mct_message_add(sentence, " s; allowed only rising times");
+            return MCT_ERROR_UNSUITED;
+        }
+    }
+    return MCT_OK;
+}
+
+static mct_status examine_duration(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
+{
+    const double ticks = scene->duration / scene->dt;
+    const int64_t nearest = (int64_t)(ticks + 0.5); /* at most 1e14 */
+    const double difference = ticks - (double)nearest;
+    /* 1e-9 of a tick, and what rounding the three numbers may have cost. */
+    const double tolerance = 1e-9 + 4 * DBL_EPSILON * ticks;
+    if (difference <= tolerance && -difference <= tolerance) {
+        return MCT_OK;
+    }
+    blame->table = "scene";
+    blame->key = "duration";
+    mct_message_add(sentence, "found ");
+    mct_message_add_number(sentence, scene->duration);
+    mct_message_add(sentence, " s, which is not a whole number of ticks of ");
+    mct_message_add_number(sentence, scene->dt);
+    mct_message_add(sentence, " s; the nearest is ");
+    mct_message_add_number(sentence, (double)nearest * scene->dt);
+    mct_message_add(sentence, " s, ");
+    mct_message_add_integer(sentence, nearest);
+    mct_message_add(sentence, nearest == 1 ? " tick" : " ticks");
+    return MCT_ERROR_UNSUITED;
+}
+
+mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
+{
+    blame->table = "scene";
+    blame->key = "system";
+    mct_message_clear(sentence);
+    if (scene->system < 0 || scene->system >= MCT_SYSTEM_COUNT) {
+        mct_message_add(sentence, "found a system that there is not");
+        return MCT_ERROR_RANGE;
+    }
+    const mct_system *const system = mct_systems[scene->system];
+    mct_status status = examine_keys(scene, system, blame, sentence);
+    status = status != MCT_OK ? status : examine_effects(scene, system, blame, sentence);
+    status = status != MCT_OK ? status : examine_stepper(scene, system, blame, sentence);
+    status = status != MCT_OK ? status : examine_controller(scene, blame, sentence);
+    status = status != MCT_OK ? status : examine_input(scene, blame, sentence);
+    status = status != MCT_OK ? status : examine_duration(scene, blame, sentence);
+    return status;
+}
+
+mct_status mct_scene_check(const mct_scene *scene, mct_message *why)
+{
+    mct_blame blame;
+    mct_message sentence;
+    const mct_status status = mct_scene_examine(scene, &blame, &sentence);
+    if (status != MCT_OK) {
+        mct_message_clear(why);
+        mct_message_add(why, blame.table);
+        mct_message_add(why, ".");
+        mct_message_add(why, blame.key);
+        mct_message_add(why, ": ");
+        mct_message_add(why, sentence.text);
+    }
+    return status;
+}

@@ -1,0 +1,273 @@
+#include "tables.h"
+
+#include <string.h>
+
+#include "mctau/stepper.h"
+
+/* --- the fixed tables --- */
+
+#define PLACE(member) offsetof(mct_scene, member)
+#define REAL(name, unit, minimum, maximum, standard, member, doc) \
+    {name, unit, doc, MCT_FIELD_REAL, minimum, maximum, standard, NULL, PLACE(member)}
+#define INTEGER(name, unit, minimum, maximum, standard, member, doc) \
+    {name, unit, doc, MCT_FIELD_INTEGER, minimum, maximum, standard, NULL, PLACE(member)}
+#define BOOLEAN(name, standard, member, doc) \
+    {name, "", doc, MCT_FIELD_BOOLEAN, 0, 1, standard, NULL, PLACE(member)}
+#define CHOICE(name, choices, standard, member, doc) \
+    {name, "", doc, MCT_FIELD_CHOICE, 0, 0, standard, choices, PLACE(member)}
+#define TEXT(name, member, doc) \
+    {name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member)}
+#define LIST(name, unit, minimum, maximum, member, doc) \
+    {name, unit, doc, MCT_FIELD_LIST, minimum, maximum, 0, NULL, PLACE(member)}
+
+#define LONGEST 1e7       /* [s] */
+#define LARGEST_INPUT 1e9 /* [V], [N] or [N m] */
+
+static const char *const precisions[] = {"double", "float", NULL};
+static const char *const controllers[] = {"none", "swing_up_balance", NULL};
+static const char *const inputs[] = {"none", "constant", "sine", "steps", "csv", NULL};
+static const char *const faults[] = {"none", "nan", "silent", "frozen", NULL};
+
+/* The names of systems and steppers stand in mct_systems and mct_steppers: see mct_choice_name. */
+static const mct_field scene_fields[] = {
+    CHOICE("system", NULL, 0, system, "what is simulated; must be given"),
+    CHOICE("stepper", NULL, MCT_STEPPER_RK4, stepper, "how; left out: the most accurate that suits system and effects"),
+    REAL("dt", "s", 1e-7, 1, 0.001, dt, "the tick: one reading of the sensors, one command, one record"),
+    INTEGER("substeps", "", 1, 1000, 1, substeps, "steps of the simulation within a tick"),
+    REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
+    CHOICE("precision", precisions, MCT_PRECISION_DOUBLE, precision, "scalar of the simulation and the controller"),
+    TEXT("hal", hal, "what stands in for the hardware"),
+    BOOLEAN("realtime", 0, realtime, "paced by the clock instead of by the simulation"),
+};
+
+static const mct_field controller_fields[] = {
+    CHOICE("kind", controllers, MCT_CONTROLLER_NONE, controller, "what decides the voltage"),
+    REAL("observer_bandwidth", "rad/s", 1, 1e4, 150, observer_bandwidth, "of the velocity estimate"),
+    REAL("energy_band", "", 0.001, 10, 0.1, energy_band,
+         "fraction of the energy from hanging to upright over which pumping fades out"),
+    REAL("capture", "", 0.05, 0.95, 0.6, capture,
+         "fraction of the region from which the voltage can still catch the upright at which balancing takes over"),
+    REAL("track_half_length", "m", 0.01, 1000, 0.4, track_half_length, "a coordinate that is a length stays within +- this"),
+    REAL("overspeed", "rad/s", 1, 1e6, 2000, overspeed, "rate of an angle beyond which the supervisor cuts the voltage"),
+    REAL("input_weight", "", 1e-6, 1e6, 1, input_weight, "cost of the voltage; larger is gentler"),
+};
+
+static const mct_field input_fields[] = {
+    CHOICE("kind", inputs, MCT_INPUT_NONE, input, "open-loop input: volts with a motor, else newtons or newton metres"),
+    REAL("value", "", -LARGEST_INPUT, LARGEST_INPUT, 0, input_value, "of a constant; of a sine, what it swings about"),
+    REAL("amplitude", "", 0, LARGEST_INPUT, 0, input_amplitude, "of a sine"),
+    REAL("frequency", "rad/s", 0, 1e6, 1, input_frequency, "of a sine"),
+    LIST("times", "s", 0, LONGEST, input_times, "of steps, rising; zero before the first"),
+    LIST("values", "", -LARGEST_INPUT, LARGEST_INPUT, input_values, "of steps, each held from its time on"),
+    TEXT("file", input_file, "CSV file with a header line, one row a tick; the last row is held"),
+    TEXT("column", input_column, "name of the column in the file"),
+};
+
+static const mct_field sensor_fields[] = {
+    INTEGER("counter_bits", "", 8, 32, 32, counter_bits, "width of an encoder's counter, which wraps"),
+    INTEGER("latency", "ticks", 0, 16, 0, latency, "age of the counts that a controller sees"),
+    REAL("noise", "counts", 0, 1000, 0, noise, "standard deviation of each count"),
+    INTEGER("seed", "", 0, INT32_MAX, 0, sensor_seed, "of the noise"),
+    CHOICE("fault", faults, MCT_SENSOR_FAULT_NONE, sensor_fault, "what befalls the sensors"),
+    REAL("fault_time", "s", 0, LONGEST, 1, sensor_fault_time, "when"),
+    REAL("fault_duration", "s", 0, LONGEST, 0.1, sensor_fault_duration, "for how long"),
+};
+
+static const mct_field variation_fields[] = {
+    REAL("spread", "", 0, 0.5, 0, variation_spread, "largest relative change of a parameter that the controller is not told"),
+    INTEGER("seed", "", 0, INT32_MAX, 0, variation_seed, "which of the varied plants"),
+};
+
+static const mct_field telemetry_fields[] = {
+    TEXT("lcm", lcm, "URL of a provider; empty: none"),
+    TEXT("log", log, "path of an event log; empty: none"),
+};
+
+#define TABLE(name, fields, doc) {name, doc, (int)(sizeof fields / sizeof fields[0]), fields}
+
+const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT] = {
+    TABLE("scene", scene_fields, "what is simulated, how, how long"),
+    TABLE("controller", controller_fields, "closed loop"),
+    TABLE("input", input_fields, "open loop, held over each tick"),
+    TABLE("sensors", sensor_fields, "encoders and what is wrong with them; counts per turn or metre by the system's encoders"),
+    TABLE("variation", variation_fields, "a plant that differs from its model"),
+    TABLE("telemetry", telemetry_fields, "who is told"),
+};
+
+/* --- all tables --- */
+
+enum { TABLE_SCENE, TABLE_SENSORS = 3 };
+
+/* Deviations that cost as much as the full input. */
+#define SMALLEST_WEIGHT 1e-6
+#define LARGEST_WEIGHT 1e6
+
+const char *mct_table_name(int table)
+{
+    static const char *const names[] = {"parameters", "effects", "initial", "weights"};
+    return table < MCT_SCENE_TABLE_COUNT ? mct_scene_tables[table].name : names[table - MCT_SCENE_TABLE_COUNT];
+}
+
+int mct_key_count(int table, const mct_system *system)
+{
+    switch (table) {
+    case MCT_TABLE_PARAMETERS:
+        return system->parameter_count;
+    case MCT_TABLE_EFFECTS:
+        return MCT_EFFECT_COUNT;
+    case MCT_TABLE_INITIAL:
+        return mct_state_count(system, system->effects);
+    case MCT_TABLE_WEIGHTS:
+        return 2 * system->coordinate_count;
+    default:
+        return mct_scene_tables[table].field_count + (table == TABLE_SENSORS ? system->coordinate_count : 0);
+    }
+}
+
+mct_scene_key mct_key_at(int table, const mct_system *system, int number)
+{
+    mct_scene_key key;
+    memset(&key, 0, sizeof key);
+    const size_t place = sizeof(double) * (size_t)number;
+    const int coordinates = system->coordinate_count;
+    switch (table) {
+    case MCT_TABLE_PARAMETERS:
+        key.field = system->parameters[number];
+        key.field.offset = PLACE(parameters) + place;
+        return key;
+    case MCT_TABLE_EFFECTS:
+        key.effect = &mct_effects[number];
+        key.field.name = key.effect->name;
+        key.field.unit = "";
+        key.field.doc = key.effect->doc;
+        key.field.kind = key.effect->choices == NULL ? MCT_FIELD_BOOLEAN : MCT_FIELD_CHOICE;
+        key.field.choices = key.effect->choices;
+        key.field.offset = PLACE(effects);
+        return key;
+    case MCT_TABLE_INITIAL:
+        key.field = *mct_state_field(system, number);
+        key.field.offset = PLACE(initial) + place;
+        return key;
+    case MCT_TABLE_WEIGHTS: {
+        const bool is_rate = number >= coordinates;
+        const mct_coordinate *const coordinate = &system->coordinates[number % coordinates];
+        key.field = *mct_state_field(system, number);
+        key.field.doc = "deviation that costs a controller as much as the full input";
+        key.field.minimum = SMALLEST_WEIGHT;
+        key.field.maximum = LARGEST_WEIGHT;
+        key.field.standard = is_rate ? coordinate->rate_weight : coordinate->position_weight;
+        key.field.offset = PLACE(weights) + place;
+        return key;
+    }
+    default: {
+        const int fixed = mct_scene_tables[table].field_count;
+        if (number < fixed) {
+            key.field = mct_scene_tables[table].fields[number];
+        } else {
+            key.field = system->coordinates[number - fixed].encoder;
+            key.field.offset = PLACE(counts_per_unit) + sizeof(double) * (size_t)(number - fixed);
+        }
+        return key;
+    }
+    }
+}
+
+const char *mct_choice_name(const mct_field *field, int32_t index)
+{
+    if (index < 0) {
+        return NULL;
+    }
+    if (field->choices == NULL) {
+        if (field->offset == PLACE(system)) {
+            return index < MCT_SYSTEM_COUNT ? mct_systems[index]->name : NULL;
+        }
+        return index < MCT_STEPPER_COUNT ? mct_steppers[index].name : NULL;
+    }
+    for (int32_t i = 0; i < index; i++) {
+        if (field->choices[i] == NULL) {
+            return NULL;
+        }
+    }
+    return field->choices[index];
+}
+
+double mct_key_get(const mct_scene *scene, const mct_scene_key *key)
+{
+    const char *const place = (const char *)scene + key->field.offset;
+    if (key->effect != NULL) {
+        const uint32_t bits = scene->effects & key->effect->mask;
+        return bits == 0 ? 0 : bits == key->effect->bits[1] ? 1 : 2;
+    }
+    if (key->field.kind == MCT_FIELD_REAL) {
+        double value;
+        memcpy(&value, place, sizeof value);
+        return value;
+    }
+    int32_t value;
+    memcpy(&value, place, sizeof value);
+    return value;
+}
+
+void mct_key_set(mct_scene *scene, const mct_scene_key *key, double value)
+{
+    char *const place = (char *)scene + key->field.offset;
+    if (key->effect != NULL) {
+        scene->effects = (scene->effects & ~key->effect->mask) | key->effect->bits[(int)value];
+    } else if (key->field.kind == MCT_FIELD_REAL) {
+        memcpy(place, &value, sizeof value);
+    } else {
+        const int32_t integer = (int32_t)value;
+        memcpy(place, &integer, sizeof integer);
+    }
+}
+
+/* --- defaults --- */
+
+double mct_motor_stiffness(const mct_scene *scene)
+{
+    const mct_system *const system = mct_systems[scene->system];
+    if (!(mct_scene_effects(scene) & MCT_MOTOR_INDUCTIVE)) {
+        return 0;
+    }
+    const double h = scene->dt / scene->substeps;
+    return h * scene->parameters[system->resistance_parameter] / scene->parameters[system->inductance_parameter];
+}
+
+bool mct_stepper_suits(const mct_scene *scene, int stepper)
+{
+    const double limit = mct_steppers[stepper].motor_stability_limit;
+    const uint32_t effects = mct_scene_effects(scene) & MCT_KERNEL_EFFECTS;
+    return mct_systems[scene->system]->kernel(stepper, effects) != NULL &&
+           (limit == 0 || mct_motor_stiffness(scene) <= limit);
+}
+
+int32_t mct_best_stepper(const mct_scene *scene)
+{
+    int32_t best = -1;
+    for (int32_t i = 0; i < MCT_STEPPER_COUNT; i++) {
+        /* Of equal order the later one: it treats more of the motion exactly. */
+        if (mct_stepper_suits(scene, i) && (best < 0 || mct_steppers[i].order >= mct_steppers[best].order)) {
+            best = i;
+        }
+    }
+    return best < 0 ? MCT_STEPPER_RK4 : best;
+}
+
+void mct_scene_defaults(mct_scene *scene, int system)
+{
+    static const char hal[] = "sim";
+    const mct_system *const descriptor = mct_systems[system];
+    memset(scene, 0, sizeof *scene); /* texts and lists are empty */
+    scene->effects = descriptor->standard_effects;
+    for (int table = 0; table < MCT_TABLE_COUNT; table++) {
+        for (int i = 0; i < mct_key_count(table, descriptor); i++) {
+            const mct_scene_key key = mct_key_at(table, descriptor, i);
+            if (table != MCT_TABLE_EFFECTS && key.field.kind != MCT_FIELD_TEXT && key.field.kind != MCT_FIELD_LIST) {
+                mct_key_set(scene, &key, key.field.standard);
+            }
+        }
+    }
+    memcpy(scene->hal, hal, sizeof hal);
+    scene->system = system;
+    scene->stepper = mct_best_stepper(scene);
+}

@@ -1,0 +1,55 @@
+/*
+ * A kernel: increments of a stepper added to a compensated state, `steps` times under a held input.
+ *
+ * A stepper is a function that writes increments. Systems hand it their pieces (right-hand side, kicks) as
+ * function arguments; everything is inlined with a literal effect mask, so a kernel is straight code.
+ */
+#ifndef MCT_STEPPERS_ADVANCE_H
+#define MCT_STEPPERS_ADVANCE_H
+
+#include "mctau/compensated.h"
+#include "mctau/step.h"
+#include "mctau/system.h"
+
+/* Time derivative of the state, or increments over one step, from the state x under input u. */
+typedef void (*mct_derivative)(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx);
+
+MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, const void *constants, mct_step step,
+                            unsigned effects, int n, mct_state *state, mct_real input, int32_t steps)
+{
+    const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
+    mct_real x[MCT_MAX_STATES];
+    mct_real c[MCT_MAX_STATES];
+    mct_real dx[MCT_MAX_STATES];
+    MCT_UNROLL
+    for (int i = 0; i < states; i++) {
+        x[i] = state->x[i];
+        c[i] = state->c[i];
+    }
+    for (int32_t k = 0; k < steps; k++) {
+        increments(constants, effects, x, input, dx);
+        if (effects & MCT_COULOMB) {
+            friction(constants, effects, x, input, dx);
+        }
+        MCT_UNROLL
+        for (int i = 0; i < states; i++) {
+#if MCT_REAL_IS_FLOAT
+            c[i] += step.remainder * dx[i];
+#endif
+            if ((effects & MCT_COULOMB) && dx[i] == -x[i]) {
+                x[i] = 0; /* at rest exactly: nothing may creep */
+                c[i] = 0;
+            } else {
+                mct_add_compensated(&x[i], &c[i], dx[i]);
+            }
+        }
+    }
+    (void)step;
+    MCT_UNROLL
+    for (int i = 0; i < states; i++) {
+        state->x[i] = x[i];
+        state->c[i] = c[i];
+    }
+}
+
+#endif

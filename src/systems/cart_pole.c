@@ -1,0 +1,404 @@
+/*
+ * Cart-pole: a cart of mass m1 on a track carries a massless rod of length l with a point mass m2 at its end.
+ *
+ * Equation      M(q) a + C(q,v) v = tau,  q = (p, th),  v = (pd, thd):
+ *                   [ m1 + m2      m2 l cos th ]       [ -m2 l thd^2 sin th ]       [ f - k1 pd             ]
+ *               M = [ m2 l cos th  m2 l^2      ]  Cv = [  0                 ] tau = [ m2 g l sin th - k2 thd]
+ *               det M = m2 l^2 (m1 + m2 sin^2 th), never taken as a difference.
+ *               With a motor f = force_per_ampere i (src/effects/motor.h) through a gear of ratio N and a pulley of
+ *               radius rho: the motor turns N / rho times as fast as the cart moves.
+ * Source        section 2.4, eqs. 115-132.
+ * Conventions   p to the right; th clockwise from the upward vertical, zero is the unstable equilibrium.
+ * Differences   (125), (129), (132) have an entry -m2 l^2 that is not there; (126), (130) lack l; (131) has m for m2.
+ *               Motor, dry friction and saturation are ours. k2 is a couple between pole and cart.
+ * Constraint    cart: the track; pole: the rod, e = m2 xdd - (0, -m2 g, 0), which also transmits the couple k2.
+ * Validity      rod and track rigid; any m1, m2, l > 0. A cart much lighter than the pole makes the motion stiff where
+ *               the pole hangs or stands.
+ */
+#include "mctau/cart_pole.h"
+
+#include "../effects/friction.h"
+#include "../effects/motor.h"
+#include "../steppers/euler.h"
+#include "../steppers/leap.h"
+#include "../steppers/rk4.h"
+#include "../steppers/seed.h"
+#include "kernels.h"
+#include "mctau/scene.h"
+#include "mctau/sincos.h"
+#include "mctau/stepper.h"
+#include "systems.h"
+
+typedef mct_cart_pole_constants constants_t;
+
+enum {
+    CART_MASS, POLE_MASS, POLE_LENGTH, CART_FRICTION, POLE_FRICTION, CART_COULOMB, POLE_COULOMB, GRAVITY,
+    TORQUE_CONSTANT, BACK_EMF_CONSTANT, RESISTANCE, INDUCTANCE, GEAR_RATIO, PULLEY_RADIUS, SUPPLY_VOLTAGE, PARAMETERS
+};
+
+static const mct_field parameters[PARAMETERS] = {
+    [CART_MASS] = MCT_QUANTITY("cart_mass", "kg", 1e-6, 1e6, 0.758, "cart, with the motor's rotor as seen through the gear"),
+    [POLE_MASS] = MCT_QUANTITY("pole_mass", "kg", 1e-6, 1e6, 0.175, "point mass at the end of the rod"),
+    [POLE_LENGTH] = MCT_QUANTITY("pole_length", "m", 1e-4, 1e4, 0.434, "pivot to point mass"),
+    [CART_FRICTION] = MCT_QUANTITY("cart_friction", "N s/m", 0, 1e6, 4.3, "viscous friction of the cart"),
+    [POLE_FRICTION] = MCT_QUANTITY("pole_friction", "N m s", 0, 1e6, 0.0024, "viscous friction of the pivot"),
+    [CART_COULOMB] = MCT_QUANTITY("cart_coulomb", "N", 0, 1e6, 0, "dry friction of the cart"),
+    [POLE_COULOMB] = MCT_QUANTITY("pole_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [TORQUE_CONSTANT] = MCT_QUANTITY("torque_constant", "N m/A", 0, 1e4, 0.00767, "motor torque per current"),
+    [BACK_EMF_CONSTANT] = MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.00767, "motor voltage per speed"),
+    [RESISTANCE] = MCT_QUANTITY("resistance", "ohm", 0, 1e6, 2.6, "armature"),
+    [INDUCTANCE] = MCT_QUANTITY("inductance", "H", 0, 1e3, 0.00018, "armature; read by motor = \"inductive\""),
+    [GEAR_RATIO] = MCT_QUANTITY("gear_ratio", "", 1e-3, 1e4, 3.71, "motor turns per pulley turn"),
+    [PULLEY_RADIUS] = MCT_QUANTITY("pulley_radius", "m", 1e-5, 1e3, 0.00635, "pulley or pinion that drives the cart"),
+    [SUPPLY_VOLTAGE] = MCT_QUANTITY("supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
+};
+
+static const mct_coordinate coordinates[2] = {
+    {.position = MCT_QUANTITY("cart_position", "m", -1e6, 1e6, 0, "to the right"),
+     .rate = MCT_QUANTITY("cart_velocity", "m/s", -1e6, 1e6, 0, ""),
+     .encoder = MCT_QUANTITY("cart_counts_per_metre", "1/m", 1, 1e9, 43958, "encoder of the cart"),
+     .position_weight = 0.3,
+     .rate_weight = 1.0},
+    {.position = MCT_QUANTITY("pole_angle", "rad", -1e6, 1e6, 3.141592653589793, "clockwise from upright"),
+     .rate = MCT_QUANTITY("pole_rate", "rad/s", -1e6, 1e6, 0, ""),
+     .is_angle = true,
+     .encoder = MCT_QUANTITY("pole_counts_per_turn", "1/turn", 4, 1e9, 4096, "encoder of the pole"),
+     .position_weight = 0.15,
+     .rate_weight = 1.5},
+};
+
+static const mct_field force_field = MCT_QUANTITY("force", "N", -1e9, 1e9, 0, "on the cart");
+static const char *const particle_names[] = {"cart", "pole"};
+
+static mct_status prepare(const struct mct_scene *scene, double h, void *constants, struct mct_message *why)
+{
+    constants_t *k = constants;
+    const double *p = scene->parameters;
+    const uint32_t effects = mct_scene_effects(scene);
+    const bool gravity = effects & MCT_GRAVITY;
+    const bool viscous = effects & MCT_VISCOUS;
+    const bool coulomb = effects & MCT_COULOMB;
+    const double inertia = p[POLE_MASS] * p[POLE_LENGTH] * p[POLE_LENGTH];
+    k->step = mct_step_of(h);
+    k->cart_mass = (mct_real)p[CART_MASS];
+    k->pole_mass = (mct_real)p[POLE_MASS];
+    k->total_mass = (mct_real)(p[CART_MASS] + p[POLE_MASS]);
+    k->length = (mct_real)p[POLE_LENGTH];
+    k->moment = (mct_real)(p[POLE_MASS] * p[POLE_LENGTH]);
+    k->inertia = (mct_real)inertia;
+    k->gravity = (mct_real)(gravity ? p[GRAVITY] : 0);
+    k->weight_moment = (mct_real)(gravity ? p[POLE_MASS] * p[GRAVITY] * p[POLE_LENGTH] : 0);
+    k->inverse_length = (mct_real)(1 / p[POLE_LENGTH]);
+    k->mass_per_inertia = (mct_real)((p[CART_MASS] + p[POLE_MASS]) / inertia);
+    k->cart_viscous = (mct_real)(viscous ? p[CART_FRICTION] : 0);
+    k->pole_viscous = (mct_real)(viscous ? p[POLE_FRICTION] : 0);
+    k->coulomb[0] = (mct_real)(coulomb ? p[CART_COULOMB] : 0);
+    k->coulomb[1] = (mct_real)(coulomb ? p[POLE_COULOMB] : 0);
+    const mct_status status =
+        mct_motor_prepare(&k->motor, effects, p[GEAR_RATIO] / p[PULLEY_RADIUS], p[TORQUE_CONSTANT],
+                          p[BACK_EMF_CONSTANT], p[RESISTANCE], p[INDUCTANCE], h);
+    k->cart_damping = k->cart_viscous + ((effects & MCT_MOTOR_QUASI_STATIC) ? k->motor.damping : 0);
+    if (status == MCT_ERROR_RANGE) {
+        mct_message_add(why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
+    }
+    return status;
+}
+
+/* Force of the track drive on the cart, but for what is proportional to the cart's velocity (cart_damping). */
+MCT_INLINE mct_real drive_force(const constants_t *k, unsigned effects, mct_real u, mct_real current)
+{
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        return k->motor.force_per_ampere * current;
+    }
+    return (effects & MCT_MOTOR_QUASI_STATIC) ? k->motor.force_per_volt * u : u;
+}
+
+MCT_INLINE bool is_cart_damped(unsigned effects)
+{
+    return (effects & (MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC)) != 0;
+}
+
+/* a = M^-1 (f1, f2), where f is tau - C v. */
+MCT_INLINE void solve(const constants_t *k, mct_real s, mct_real c, mct_real f1, mct_real f2, mct_real *a)
+{
+    const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
+    const mct_real c_over_l = c * k->inverse_length;
+    a[0] = inverse * (f1 - c_over_l * f2);
+    a[1] = inverse * (k->mass_per_inertia * f2 - c_over_l * f1);
+}
+
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real pd = x[2];
+    const mct_real thd = x[3];
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
+    mct_real f1 = drive_force(k, effects, u, current) + k->moment * s * thd * thd;
+    mct_real f2 = 0;
+    if (effects & MCT_GRAVITY) {
+        f2 = k->weight_moment * s;
+    }
+    if (is_cart_damped(effects)) {
+        f1 -= k->cart_damping * pd;
+    }
+    if (effects & MCT_VISCOUS) {
+        f2 -= k->pole_viscous * thd;
+    }
+    dx[0] = pd;
+    dx[1] = thd;
+    solve(k, s, c, f1, f2, dx + 2);
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        dx[4] = mct_motor_current_rate(&k->motor, u, pd, current);
+    }
+}
+
+/*
+ * Velocity increments of an impulse over the step, with the matrix M + extra, where extra = [e11 e12; 0 e22] holds what is
+ * taken implicitly. The determinant is that of M plus what extra adds, so that a light cart does not lose it.
+ */
+MCT_INLINE void impulse(const constants_t *k, mct_real s, mct_real c, mct_real e11, mct_real e12, mct_real e22,
+                        mct_real p1, mct_real p2, mct_real *dv)
+{
+    const mct_real m12 = k->moment * c;
+    const mct_real a11 = k->total_mass + e11;
+    const mct_real a12 = m12 + e12;
+    const mct_real a22 = k->inertia + e22;
+    const mct_real det_M = k->inertia * (k->cart_mass + k->pole_mass * s * s);
+    const mct_real det = det_M + (e11 * a22 + k->total_mass * e22 - e12 * m12);
+    const mct_real inverse = 1 / det;
+    dv[0] = inverse * (a22 * p1 - a12 * p2);
+    dv[1] = inverse * (a11 * p2 - m12 * p1);
+}
+
+/* Kick of `euler`: damping and current implicit, h known to the constants. */
+MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->step.h;
+    const mct_real pd = x[2];
+    const mct_real thd = x[3];
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    mct_real current = 0;
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        const mct_real gain = h * k->motor.inverse_inductance;
+        current = (x[4] + gain * (u - k->motor.emf * pd)) / (1 + gain * k->motor.resistance);
+        dx[4] = current - x[4];
+    }
+    mct_real f1 = drive_force(k, effects, u, current) + k->moment * s * thd * thd;
+    mct_real f2 = 0;
+    mct_real e11 = 0;
+    mct_real e22 = 0;
+    if (effects & MCT_GRAVITY) {
+        f2 = k->weight_moment * s;
+    }
+    if (is_cart_damped(effects)) {
+        f1 -= k->cart_damping * pd;
+        e11 = h * k->cart_damping;
+    }
+    if (effects & MCT_VISCOUS) {
+        f2 -= k->pole_viscous * thd;
+        e22 = h * k->pole_viscous;
+    }
+    impulse(k, s, c, e11, 0, e22, h * f1, h * f2, dx + 2);
+}
+
+/* Kick of `leap`: bilinear in old and new velocity, damping at their mean, current averaged exactly. */
+MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->step.h;
+    const mct_real half = k->step.half;
+    const mct_real pd = x[2];
+    const mct_real thd = x[3];
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    const mct_real centrifugal = k->moment * s * thd;
+    mct_real current = 0;
+    mct_real e11 = 0;
+    mct_real e22 = 0;
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        current = mct_motor_mean_current(&k->motor, u, pd, x[4]);
+        e11 = h * k->motor.force_per_ampere * k->motor.emf * k->motor.mean_from_change;
+    }
+    mct_real f1 = drive_force(k, effects, u, current) + centrifugal * thd;
+    mct_real f2 = 0;
+    if (effects & MCT_GRAVITY) {
+        f2 = k->weight_moment * s;
+    }
+    if (is_cart_damped(effects)) {
+        f1 -= k->cart_damping * pd;
+        e11 += half * k->cart_damping;
+    }
+    if (effects & MCT_VISCOUS) {
+        f2 -= k->pole_viscous * thd;
+        e22 = half * k->pole_viscous;
+    }
+    impulse(k, s, c, e11, -h * centrifugal, e22, h * f1, h * f2, dx + 2);
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        dx[4] = mct_motor_current_change(&k->motor, u, pd, x[4], dx[2]);
+    }
+}
+
+static mct_symmetric2 inverse_mass(const constants_t *k, mct_real s, mct_real c)
+{
+    const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
+    return (mct_symmetric2){inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia};
+}
+
+/* Dry friction at the middle of the step. */
+static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    (void)effects;
+    (void)u;
+    const constants_t *k = constants;
+    mct_real s, c;
+    mct_sincos(x[1] + MCT_R(0.5) * dx[1], &s, &c);
+    mct_friction_correct(inverse_mass(k, s, c), k->coulomb, k->step.h, x + 2, dx);
+}
+
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_evaluation *out)
+{
+    const constants_t *k = constants;
+    const mct_real pd = x[2];
+    const mct_real thd = x[3];
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    *out = (mct_evaluation){0};
+    out->M[0][0] = k->total_mass;
+    out->M[0][1] = out->M[1][0] = k->moment * c;
+    out->M[1][1] = k->inertia;
+    out->C[0][1] = -k->moment * s * thd;
+    out->Cv[0] = out->C[0][1] * thd;
+
+    mct_real drive = u;
+    if (effects & MCT_MOTOR) {
+        out->current =
+            (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : mct_motor_quasi_static_current(&k->motor, u, pd);
+        drive = k->motor.force_per_ampere * out->current;
+    }
+    const mct_real cart_viscous = -k->cart_viscous * pd;
+    const mct_real pole_viscous = -k->pole_viscous * thd;
+    const mct_real smooth[2] = {drive + cart_viscous - out->Cv[0], k->weight_moment * s + pole_viscous};
+    mct_real dry[2];
+    mct_friction_force(inverse_mass(k, s, c), k->coulomb, x + 2, smooth, dry);
+    solve(k, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
+    out->tau[0] = drive + cart_viscous + dry[0];
+    out->tau[1] = k->weight_moment * s + pole_viscous + dry[1];
+
+    const mct_real a = out->acceleration[0];
+    const mct_real alpha = out->acceleration[1];
+    const mct_real pole_acceleration[2] = {a + k->length * (c * alpha - s * thd * thd),
+                                           -k->length * (s * alpha + c * thd * thd)};
+    out->mass[0] = k->cart_mass;
+    out->mass[1] = k->pole_mass;
+    out->position[0][0] = x[0];
+    out->position[1][0] = x[0] + k->length * s;
+    out->position[1][1] = k->length * c;
+    out->constraint_force[0][0] = k->cart_mass * a - out->tau[0];
+    out->constraint_force[0][1] = k->cart_mass * k->gravity;
+    out->constraint_force[1][0] = k->pole_mass * pole_acceleration[0];
+    out->constraint_force[1][1] = k->pole_mass * (pole_acceleration[1] + k->gravity);
+
+    out->kinetic_energy = MCT_R(0.5) * (k->total_mass * pd * pd + k->inertia * thd * thd) + k->moment * c * pd * thd;
+    out->potential_energy = k->weight_moment * c;
+    out->power_viscous = cart_viscous * pd + pole_viscous * thd;
+    out->power_coulomb = dry[0] * pd + dry[1] * thd;
+    mct_motor_powers(&k->motor, effects, u, pd, out);
+}
+
+static void accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_real *a)
+{
+    const constants_t *k = constants;
+    const mct_real force = mct_motor_observed_force(&k->motor, effects, u, x[2]);
+    const mct_real thd = x[3];
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    solve(k, s, c, force - k->cart_viscous * x[2] + k->moment * s * thd * thd,
+          k->weight_moment * s - k->pole_viscous * thd, a);
+}
+
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3])
+{
+    (void)time;
+    const constants_t *k = constants;
+    const mct_hyperdual zero = mct_hyperdual_constant(0);
+    position[0][0] = q[0];
+    position[0][1] = zero;
+    position[0][2] = zero;
+    position[1][0] = mct_hyperdual_add(q[0], mct_hyperdual_scale(k->length, mct_hyperdual_sin(q[1])));
+    position[1][1] = mct_hyperdual_scale(k->length, mct_hyperdual_cos(q[1]));
+    position[1][2] = zero;
+}
+
+static void linearise(const struct mct_scene *scene, mct_linear_model *model)
+{
+    const double *p = scene->parameters;
+    const bool viscous = scene->effects & MCT_VISCOUS;
+    const double ratio = p[GEAR_RATIO] / p[PULLEY_RADIUS];
+    const bool motor = scene->effects & MCT_MOTOR;
+    const double volts_to_force = motor ? ratio * p[TORQUE_CONSTANT] / p[RESISTANCE] : 1;
+    const double back_emf = motor ? volts_to_force * ratio * p[BACK_EMF_CONSTANT] : 0;
+    const double cart_damping = (viscous ? p[CART_FRICTION] : 0) + back_emf;
+    const double pole_damping = viscous ? p[POLE_FRICTION] : 0;
+    const double stiffness =
+        (scene->effects & MCT_GRAVITY) ? p[POLE_MASS] * p[GRAVITY] * p[POLE_LENGTH] : 0;
+    /* M^-1 upright: [1, -1/l; -1/l, (m1 + m2)/(m2 l^2)] / m1. */
+    const double w11 = 1 / p[CART_MASS];
+    const double w12 = -w11 / p[POLE_LENGTH];
+    const double w22 =
+        w11 * (p[CART_MASS] + p[POLE_MASS]) / (p[POLE_MASS] * p[POLE_LENGTH] * p[POLE_LENGTH]);
+    *model = (mct_linear_model){
+        .states = 4,
+        .A = {0, 0, 1, 0,
+              0, 0, 0, 1,
+              0, w12 * stiffness, -w11 * cart_damping, -w12 * pole_damping,
+              0, w22 * stiffness, -w12 * cart_damping, -w22 * pole_damping},
+        .B = {0, 0, w11 * volts_to_force, w12 * volts_to_force},
+    };
+}
+
+MCT_STEPPER_KERNELS(seed, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(euler, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(leap, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(rk4, mct_rk4(derivative, k, k->step, effects, 2, x, u, dx))
+
+static mct_kernel kernel(int stepper, uint32_t effects)
+{
+    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+        [MCT_STEPPER_SEED] = seed_kernels,
+        [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,
+        [MCT_STEPPER_RK4] = rk4_kernels,
+    };
+    return mct_kernel_of(kernels, stepper, effects);
+}
+
+const mct_system mct_cart_pole = {
+    .name = "cart_pole",
+    .doc = "a pole on a cart: the classical inverted pendulum",
+    .source = "2.4",
+    .coordinate_count = 2,
+    .coordinates = coordinates,
+    .parameter_count = PARAMETERS,
+    .parameters = parameters,
+    .input_without_motor = &force_field,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR | MCT_SATURATION,
+    .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC | MCT_SATURATION,
+    .particle_count = 2,
+    .particle_names = particle_names,
+    .driven_coordinate = 0,
+    .upright_coordinate = 1,
+    .supply_parameter = SUPPLY_VOLTAGE,
+    .resistance_parameter = RESISTANCE,
+    .inductance_parameter = INDUCTANCE,
+    .prepare = prepare,
+    .evaluate = evaluate,
+    .accelerate = accelerate,
+    .place = place,
+    .linearise = linearise,
+    .kernel = kernel,
+};

@@ -1,0 +1,188 @@
+#include "options.h"
+
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mctau/stepper.h"
+#include "say.h"
+
+enum { HELP = 256, FIRST_OPTION = 512 }; /* values that getopt_long gives */
+
+/* --- help --- */
+
+static const mct_field *find_field(const char *key)
+{
+    for (int i = 0; i < MCT_SCENE_TABLE_COUNT; i++) {
+        const mct_scene_table *table = &mct_scene_tables[i];
+        const size_t length = strlen(table->name);
+        if (strncmp(key, table->name, length) != 0 || key[length] != '.') {
+            continue;
+        }
+        for (int j = 0; j < table->field_count; j++) {
+            if (strcmp(table->fields[j].name, key + length + 1) == 0) {
+                return &table->fields[j];
+            }
+        }
+    }
+    return NULL;
+}
+
+static void print_choices(const mct_field *field, FILE *file)
+{
+    fputs("; one of", file);
+    if (field->choices == NULL) {
+        for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+            fprintf(file, " %s", mct_steppers[i].name);
+        }
+    }
+    for (int i = 0; field->choices != NULL && field->choices[i] != NULL; i++) {
+        fprintf(file, " %s", field->choices[i]);
+    }
+}
+
+static void print_option(const option *self, FILE *file)
+{
+    char head[64];
+    snprintf(head, sizeof head, "--%s %s", self->name, self->argument != NULL ? self->argument : "");
+    fprintf(file, "  %-24s ", head);
+    const mct_field *field = self->key != NULL ? find_field(self->key) : NULL;
+    fputs(self->doc != NULL ? self->doc : field != NULL ? field->doc : "", file);
+    if (field == NULL) {
+        fputc('\n', file);
+        return;
+    }
+    if (field->kind == MCT_FIELD_CHOICE) {
+        print_choices(field, file);
+    } else if (field->unit[0] != '\0') {
+        fprintf(file, " [%s]", field->unit);
+    }
+    if (field->kind == MCT_FIELD_REAL) {
+        fprintf(file, "; default %g", field->standard);
+    }
+    fprintf(file, "\n  %-24s = --set %s=%s\n", "", self->key, self->argument != NULL ? self->argument : "true");
+}
+
+void print_help(const verb *verb, FILE *file)
+{
+    fprintf(file, "usage: mctau %s%s%s [options]\n\n%s\n\nOptions\n", verb->name, verb->operand != NULL ? " " : "",
+            verb->operand != NULL ? verb->operand : "", verb->text);
+    for (const option *row = verb->options; row->name != NULL; row++) {
+        print_option(row, file);
+    }
+    fprintf(file, "  %-24s this text\n\nExamples\n%s\nExit codes\n%s", "--help", verb->examples, verb->exit_codes);
+}
+
+/* --- parser --- */
+
+const char *arguments_value(const arguments *self, const char *name)
+{
+    for (int i = 0; self->verb->options[i].name != NULL; i++) {
+        if (strcmp(self->verb->options[i].name, name) == 0) {
+            return self->values[i];
+        }
+    }
+    return NULL;
+}
+
+/* "--duration", as messages of the scene reader shall call it; owned by the arguments. */
+static char *joined(const char *a, const char *b, const char *c)
+{
+    const size_t size = strlen(a) + strlen(b) + strlen(c) + 1;
+    char *text = need_memory(malloc(size));
+    snprintf(text, size, "%s%s%s", a, b, c);
+    return text;
+}
+
+static bool add_override(arguments *self, const option *row, const char *value, int *exit_code)
+{
+    if (strpbrk(value, "\r\n") != NULL) {
+        *exit_code = say(EXIT_USAGE, "--%s: found a line break within its argument; allowed one line", row->name);
+        return false;
+    }
+    const size_t size = (size_t)(self->override_count + 1) * sizeof *self->overrides;
+    self->overrides = need_memory(realloc(self->overrides, size));
+    const bool any = row->key[0] == '\0';
+    self->overrides[self->override_count++] = (mct_override){
+        .assignment = any ? joined(value, "", "") : joined(row->key, "=", value),
+        .origin = joined("--", row->name, ""),
+    };
+    return true;
+}
+
+void arguments_free(arguments *self)
+{
+    for (int i = 0; i < self->override_count; i++) {
+        free((char *)(uintptr_t)self->overrides[i].assignment);
+        free((char *)(uintptr_t)self->overrides[i].origin);
+    }
+    free(self->overrides);
+}
+
+static int complain(const verb *verb, char **argv, int wrong)
+{
+    const char *what = argv[optind - 1];
+    if (wrong == ':') {
+        return say(EXIT_USAGE, "%s: %s needs an argument; mctau %s --help shows which", verb->name, what, verb->name);
+    }
+    if (optopt >= FIRST_OPTION || optopt == HELP) {
+        return say(EXIT_USAGE, "%s: %s takes no argument", verb->name, what);
+    }
+    return say(EXIT_USAGE, "%s: unknown or ambiguous option %s; mctau %s --help lists all", verb->name, what, verb->name);
+}
+
+static bool take_operand(arguments *self, int argc, char **argv, int *exit_code)
+{
+    const verb *verb = self->verb;
+    const int allowed = verb->operand != NULL ? 1 : 0;
+    if (argc - optind > allowed) {
+        *exit_code = say(EXIT_USAGE, "%s: found one argument too many: %s; usage: mctau %s %s [options]", verb->name,
+                         argv[optind + allowed], verb->name, verb->operand != NULL ? verb->operand : "");
+        return false;
+    }
+    if (argc > optind) {
+        self->operand = argv[optind];
+    } else if (allowed == 1 && verb->operand[0] != '[') {
+        *exit_code = say(EXIT_USAGE, "%s: no %s given\nusage: mctau %s %s [options]\n%smctau %s --help tells more", verb->name,
+                         verb->operand, verb->name, verb->operand, verb->examples, verb->name);
+        return false;
+    }
+    return true;
+}
+
+bool arguments_read(arguments *self, const verb *verb, int argc, char **argv, int *exit_code)
+{
+    struct option table[MAX_OPTIONS + 2];
+    int count = 0;
+    memset(self, 0, sizeof *self);
+    self->verb = verb;
+    for (; verb->options[count].name != NULL; count++) {
+        const int has_argument = verb->options[count].argument != NULL ? required_argument : no_argument;
+        table[count] = (struct option){verb->options[count].name, has_argument, NULL, FIRST_OPTION + count};
+    }
+    table[count] = (struct option){"help", no_argument, NULL, HELP};
+    table[count + 1] = (struct option){NULL, 0, NULL, 0};
+    opterr = 0;
+    for (;;) {
+        const int found = getopt_long(argc, argv, ":h", table, NULL);
+        if (found == -1) {
+            return take_operand(self, argc, argv, exit_code);
+        }
+        if (found == HELP || found == 'h') {
+            print_help(verb, stdout);
+            *exit_code = EXIT_WELL;
+            return false;
+        }
+        if (found < FIRST_OPTION) {
+            *exit_code = complain(verb, argv, found);
+            return false;
+        }
+        const option *row = &verb->options[found - FIRST_OPTION];
+        const char *value = optarg != NULL ? optarg : "";
+        self->values[found - FIRST_OPTION] = value;
+        const char *meaning = row->argument != NULL ? value : "true";
+        if (row->key != NULL && !add_override(self, row, meaning, exit_code)) {
+            return false;
+        }
+    }
+}

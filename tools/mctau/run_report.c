@@ -1,0 +1,334 @@
+/* The result of a run, for scripts and for people. */
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "json.h"
+#include "mctau/stepper.h"
+#include "mctau/supervisor.h"
+#include "run.h"
+
+#define DEGREES 57.29577951308232
+
+static double total(const energies *energy)
+{
+    return energy->kinetic + energy->potential + energy->magnetic;
+}
+
+static double time_of(const run_report *report)
+{
+    return (double)report->result.ticks * report->scene->scene.dt;
+}
+
+static bool was_seen(const run_result *result, int fault)
+{
+    return result->faults[fault] > 0 || (result->latched & (1u << fault)) != 0;
+}
+
+/* --- JSON --- */
+
+static void json_time(json *out, const char *key, double time)
+{
+    json_number(out, key, time >= 0 ? time : (double)NAN);
+}
+
+static void json_energies(json *out, const run_result *result)
+{
+    json_number(out, "energy", total(&result->energy));
+    json_number(out, "energy_start", total(&result->energy_start));
+    json_object(out, "energies");
+    json_number(out, "kinetic", result->energy.kinetic);
+    json_number(out, "potential", result->energy.potential);
+    json_number(out, "magnetic", result->energy.magnetic);
+    json_end_object(out);
+}
+
+static void json_faults(json *out, const run_result *result)
+{
+    json_list(out, "faults");
+    for (int i = 0; i < MCT_FAULT_COUNT; i++) {
+        if (was_seen(result, i)) {
+            json_text(out, NULL, mct_fault_name((mct_fault)i));
+        }
+    }
+    json_end_list(out);
+    json_object(out, "fault_ticks");
+    for (int i = 0; i < MCT_FAULT_COUNT; i++) {
+        if (was_seen(result, i)) {
+            json_count(out, mct_fault_name((mct_fault)i), result->faults[i]);
+        }
+    }
+    json_end_object(out);
+    json_time(out, "fault_at", result->fault_at);
+}
+
+static void json_timing(json *out, const run_result *result)
+{
+    double lateness[32];
+    for (int i = 0; i < 32; i++) {
+        lateness[i] = (double)result->lateness[i];
+    }
+    json_object(out, "timing");
+    json_count(out, "missed_ticks", result->missed_ticks);
+    json_count(out, "worst_late_us", result->worst_late_us);
+    json_count(out, "worst_work_us", result->worst_work_us);
+    json_boolean(out, "has_priority", result->has_priority);
+    json_boolean(out, "has_memory", result->has_memory);
+    json_vector(out, "lateness", lateness, 32);
+    json_end_object(out);
+}
+
+static void json_telemetry(json *out, const run_result *result)
+{
+    json_object(out, "telemetry");
+    json_count(out, "dropped", result->dropped);
+    json_count(out, "published", result->published);
+    json_count(out, "publish_errors", result->publish_errors);
+    json_count(out, "logged", result->logged);
+    json_count(out, "log_errors", result->log_errors);
+    json_end_object(out);
+}
+
+void print_run_json(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    const mct_scene *scene = &report->scene->scene;
+    json out = json_begin(file, "mctau.run/1");
+    json_text(&out, "system", mct_systems[scene->system]->name);
+    json_text(&out, "stepper", mct_steppers[scene->stepper].name);
+    json_text(&out, "precision", report->scene->runner->precision);
+    json_number(&out, "dt", scene->dt);
+    json_count(&out, "ticks", result->ticks);
+    json_number(&out, "time", time_of(report));
+    json_object(&out, "state");
+    for (int i = 0; i < result->states; i++) {
+        json_number(&out, result->names[i], result->state[i]);
+    }
+    json_end_object(&out);
+    json_object(&out, "state_hex");
+    for (int i = 0; i < result->states; i++) {
+        json_hex(&out, result->names[i], result->state[i]);
+    }
+    json_end_object(&out);
+    json_energies(&out, result);
+    json_faults(&out, result);
+    json_text(&out, "verdict", verdict_name(report->verdict));
+    json_time(&out, "upright_at", result->upright_at);
+    json_time(&out, "worst_after_upright", result->upright_at >= 0 ? result->worst_after_upright : -1);
+    json_number(&out, "deviation", result->deviation);
+    json_text(&out, "mode", result->mode);
+    json_object(&out, "counters");
+    json_count(&out, "limited_ticks", result->limited_ticks);
+    json_count(&out, "derated_ticks", result->derated_ticks);
+    json_count(&out, "rejected_inputs", result->rejected_inputs);
+    json_count(&out, "diverged_ticks", result->diverged_ticks);
+    json_end_object(&out);
+    if (scene->realtime) {
+        json_timing(&out, result);
+    }
+    if (scene->log[0] != '\0' || scene->lcm[0] != '\0') {
+        json_telemetry(&out, result);
+    }
+    json_number(&out, "ns_per_tick", result->ns_per_tick);
+    json_finish(&out);
+}
+
+/* --- for people --- */
+
+static void print_verdict(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    const double time = time_of(report);
+    switch (report->verdict) {
+    case BALANCED:
+        fprintf(file, "Balanced: upright since %.3f s, never more than %.2f deg away from it since then.\n",
+                result->upright_at, result->worst_after_upright * DEGREES);
+        break;
+    case NOT_BALANCED:
+        if (result->upright_at >= 0) {
+            fprintf(file, "Not balanced yet: upright since %.3f s, which is less than a second ago.\n", result->upright_at);
+        } else {
+            fprintf(file, "Not balanced: %.1f deg from upright at the end, %.1f deg at the nearest; the controller was in mode %s.\n",
+                    result->deviation * DEGREES, result->least_deviation * DEGREES, result->mode);
+        }
+        break;
+    case FAULTED:
+        fprintf(file, "Faulted at %.3f s: zero volts from there on.\n", result->fault_at);
+        break;
+    case DIVERGED:
+        fprintf(file, "Diverged: on %" PRIu64 " ticks the simulation left all bounds; the last sane state was kept.\n",
+                result->diverged_ticks);
+        break;
+    case STOPPED:
+        fprintf(file, "Stopped from outside at %.3f s, at zero volts.\n", time);
+        break;
+    case FINISHED:
+        fprintf(file, "Finished: %g s of %s motion.\n", time,
+                report->scene->scene.input == MCT_INPUT_NONE ? "free" : "open-loop");
+        break;
+    }
+}
+
+static void print_state(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    fprintf(file, "\nState at %g s\n", time_of(report));
+    for (int i = 0; i < result->states; i++) {
+        const double value = result->state[i];
+        const bool is_angle = strcmp(result->units[i], "rad") == 0;
+        fprintf(file, "  %-16s %14.6g %-6s", result->names[i], value, result->units[i]);
+        if (is_angle && fabs(value) < 20) {
+            fprintf(file, " %10.3f deg", value * DEGREES);
+        } else if (is_angle) {
+            fprintf(file, " %10.3f turns", value * DEGREES / 360);
+        }
+        fputc('\n', file);
+    }
+}
+
+static void print_energy(const run_result *result, FILE *file)
+{
+    const energies *end = &result->energy;
+    fprintf(file, "\nEnergy [J]\n  %-16s %14s %14s %14s %14s\n", "", "kinetic", "potential", "magnetic", "total");
+    const energies *const rows[] = {&result->energy_start, end};
+    static const char *const names[] = {"at the start", "at the end"};
+    for (int i = 0; i < 2; i++) {
+        fprintf(file, "  %-16s %14.6g %14.6g %14.6g %14.6g\n", names[i], rows[i]->kinetic, rows[i]->potential,
+                rows[i]->magnetic, total(rows[i]));
+    }
+}
+
+static void print_share(FILE *file, const char *what, uint64_t ticks, uint64_t all)
+{
+    if (ticks > 0) {
+        fprintf(file, "  %s on %" PRIu64 " of %" PRIu64 " ticks (%.1f %%)\n", what, ticks, all,
+                100 * (double)ticks / (double)all);
+    }
+}
+
+static void print_faults(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    bool any = false;
+    for (int i = 0; i < MCT_FAULT_COUNT; i++) {
+        if (was_seen(result, i)) {
+            fprintf(file, "%s  %s, seen on %" PRIu64 " ticks: %s\n", any ? "" : "\nFaults\n", mct_fault_name((mct_fault)i),
+                    result->faults[i], mct_fault_text((mct_fault)i));
+            any = true;
+        }
+    }
+    if (!any) {
+        fputs("\nFaults: none\n", file);
+    }
+    char limited[64];
+    snprintf(limited, sizeof limited, "the input was cut at its limit of %g V", result->limit);
+    print_share(file, limited, result->limited_ticks, result->ticks);
+    print_share(file, "the voltage was reduced because feedback was late", result->derated_ticks, result->ticks);
+    print_share(file, "the plant refused an input that was not finite", result->rejected_inputs, result->ticks);
+}
+
+static void print_timing(const run_result *result, FILE *file)
+{
+    enum { WIDTH = 50 };
+    uint64_t most = 1;
+    for (int i = 0; i < 32; i++) {
+        most = result->lateness[i] > most ? result->lateness[i] : most;
+    }
+    fprintf(file, "\nClock: latest wake-up %" PRIu32 " us late, longest tick %" PRIu32 " us of work, %" PRIu64 " ticks missed\n",
+            result->worst_late_us, result->worst_work_us, result->missed_ticks);
+    if (!result->has_priority || !result->has_memory) {
+        fprintf(file, "  without%s%s%s: run as root, or raise the limits rtprio and memlock\n",
+                result->has_priority ? "" : " real-time priority",
+                !result->has_priority && !result->has_memory ? " and" : "", result->has_memory ? "" : " locked memory");
+    }
+    for (int i = 0; i < 32; i++) {
+        if (result->lateness[i] > 0) {
+            fprintf(file, "  below %9.0f us %8" PRIu64 "  %.*s\n", ldexp(1, i), result->lateness[i],
+                    (int)(1 + (WIDTH - 1) * result->lateness[i] / most), "##################################################");
+        }
+    }
+}
+
+static void print_speed(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    const double loop_s = 1e-9 * result->ns_per_tick * (double)result->ticks;
+    if (loop_s > 0) {
+        fprintf(file, "\nSpeed: %.0f ns per tick, %.0f times as fast as the mechanism itself\n", result->ns_per_tick,
+                time_of(report) / loop_s);
+    }
+}
+
+static void print_files(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    const run_options *options = report->options;
+    const bool has_csv = options->csv != NULL && options->csv[0] != '\0' && result->csv_errno == 0;
+    const bool has_log = options->log[0] != '\0';
+    const bool has_lcm = options->lcm[0] != '\0';
+    if (!has_csv && !has_log && !has_lcm) {
+        return;
+    }
+    fputs("\nWritten\n", file);
+    if (has_csv) {
+        fprintf(file, "  %s: %" PRIu64 " rows\n", options->csv, result->csv_rows);
+    }
+    if (has_log) {
+        fprintf(file, "  %s: %" PRIu64 " records", options->log, result->logged);
+        fprintf(file, result->log_errors > 0 ? ", %" PRIu64 " did not fit\n" : "\n", result->log_errors);
+    }
+    if (has_lcm) {
+        fprintf(file, "  %s: %" PRIu64 " records published, %" PRIu64 " errors\n", options->lcm, result->published,
+                result->publish_errors);
+    }
+    if (result->dropped > 0) {
+        fprintf(file, "  %" PRIu64 " records were dropped because telemetry could not keep up; no tick waited for it\n",
+                result->dropped);
+    }
+}
+
+/* What to do next, by what has happened. */
+static void print_next(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    const run_options *options = report->options;
+    const char *path = report->scene->path;
+    fputs("\nNext\n", file);
+    if (report->verdict == DIVERGED) {
+        fprintf(file, "  a smaller step (--dt, --set scene.substeps=10) or another --stepper; mctau list tells which suit\n");
+    } else if (report->verdict == NOT_BALANCED && result->upright_at >= 0) {
+        fprintf(file, "  a longer --duration\n");
+    } else if (report->verdict == NOT_BALANCED) {
+        fprintf(file, "  a longer --duration, if it still swings up; more voltage or torque (supply_voltage, torque_constant)\n"
+                      "  if it never got near; gentler weights ([weights], controller.input_weight) if it fell\n");
+    } else if (report->verdict == FAULTED) {
+        fprintf(file, "  the rows around %.3f s in --csv show what the sensors said and what the motor was given\n",
+                result->fault_at);
+    }
+    if (options->log[0] != '\0' && result->log_errors == 0) {
+        fprintf(file, "  mctau replay %s   runs it again from its log and proves the same bits\n", options->log);
+    }
+    if (options->csv == NULL) {
+        fprintf(file, "  mctau run %s --csv run.csv   writes every tick, for a plot\n", path);
+    }
+    fprintf(file, "  mctau mct %s   shows M, C, tau and the constraint forces at the initial state\n", path);
+}
+
+void print_run(const run_report *report, FILE *file)
+{
+    const mct_scene *scene = &report->scene->scene;
+    fprintf(file, "%s: %s, stepper %s, precision %s, tick %g s, %" PRIu64 " ticks\n\n",
+            strcmp(report->scene->path, "-") == 0 ? "standard input" : report->scene->path, mct_systems[scene->system]->name,
+            mct_steppers[scene->stepper].name, report->scene->runner->precision, scene->dt, report->result.ticks);
+    print_verdict(report, file);
+    print_state(report, file);
+    print_energy(&report->result, file);
+    print_faults(report, file);
+    if (scene->realtime) {
+        print_timing(&report->result, file);
+    } else {
+        print_speed(report, file);
+    }
+    print_files(report, file);
+    print_next(report, file);
+}

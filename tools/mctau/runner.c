@@ -1,0 +1,87 @@
+/* The one table that a precision shows to the front end. MCT_RUNNER, its name, is given by the build. */
+#include "runner.h"
+
+#include <string.h>
+
+#include "mctau/input.h"
+#include "mctau/plant.h"
+#include "runner_replay.h"
+#include "runner_run.h"
+
+energies runner_energies(const mct_evaluation *at)
+{
+    return (energies){
+        .kinetic = (double)at->kinetic_energy,
+        .potential = (double)at->potential_energy,
+        .magnetic = (double)at->magnetic_energy,
+        .power_input = (double)at->power_input,
+        .power_viscous = (double)at->power_viscous,
+        .power_coulomb = (double)at->power_coulomb,
+        .power_resistance = (double)at->power_resistance,
+        .power_conversion = (double)at->power_conversion,
+    };
+}
+
+/* Input at t = 0, within the plant's bounds. */
+static mct_real input_of(const mct_scene *scene, const run_options *options, const double *given, mct_real bound)
+{
+    mct_input open_loop;
+    mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});
+    const mct_real wanted = given != NULL ? (mct_real)*given : mct_input_at(&open_loop, 0);
+    return wanted > bound ? bound : wanted < -bound ? -bound : wanted;
+}
+
+static mct_status runner_mct(const mct_scene *scene, const run_options *options, const double *input,
+                             mct_result *result, mct_message *why)
+{
+    mct_plant plant;
+    mct_evaluation at;
+    memset(result, 0, sizeof *result);
+    mct_message_clear(why);
+    const mct_status status = mct_plant_init(&plant, scene, why);
+    if (status != MCT_OK) {
+        return status;
+    }
+    plant.input = input_of(scene, options, input, plant.bound);
+    mct_plant_evaluate(&plant, &at);
+    const mct_system *system = plant.system;
+    result->states = mct_state_count(system, plant.effects);
+    for (int i = 0; i < result->states; i++) {
+        const mct_field *field = mct_state_field(system, i);
+        result->names[i] = field->name;
+        result->units[i] = field->unit;
+        result->state[i] = mct_plant_value(&plant, i);
+    }
+    result->coordinates = system->coordinate_count;
+    for (int i = 0; i < result->coordinates; i++) {
+        for (int j = 0; j < result->coordinates; j++) {
+            result->M[i][j] = (double)at.M[i][j];
+            result->C[i][j] = (double)at.C[i][j];
+        }
+        result->Cv[i] = (double)at.Cv[i];
+        result->tau[i] = (double)at.tau[i];
+        result->acceleration[i] = (double)at.acceleration[i];
+    }
+    result->particles = system->particle_count;
+    for (int i = 0; i < result->particles; i++) {
+        result->particle_names[i] = system->particle_names[i];
+        result->mass[i] = (double)at.mass[i];
+        for (int axis = 0; axis < 3; axis++) {
+            result->position[i][axis] = (double)at.position[i][axis];
+            result->constraint_force[i][axis] = (double)at.constraint_force[i][axis];
+        }
+    }
+    result->current = (double)at.current;
+    result->input = (double)plant.input;
+    result->energy = runner_energies(&at);
+    return MCT_OK;
+}
+
+extern const mct_runner MCT_RUNNER;
+const mct_runner MCT_RUNNER = {
+    .precision = MCT_REAL_IS_FLOAT ? "float" : "double",
+    .real_size = sizeof(mct_real),
+    .run = runner_run,
+    .mct = runner_mct,
+    .replay = runner_replay,
+};
