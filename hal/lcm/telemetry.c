@@ -401,7 +401,7 @@ static bool read_url(const char *url, struct sockaddr_in *address)
     memset(address, 0, sizeof *address);
     address->sin_family = AF_INET;
     address->sin_port = htons(7667);
-    return inet_pton(AF_INET, text, &address->sin_addr) == 1;
+    return inet_pton(AF_INET, text, &address->sin_addr) == 1 && IN_MULTICAST(ntohl(address->sin_addr.s_addr));
 }
 
 /* Whether there is a route to an address: connecting a datagram's socket sends nothing. LCM says so, too, but on stderr. */
@@ -421,7 +421,7 @@ static mct_status open_lcm(mct_telemetry *self, const char *url, mct_message *wh
     struct sockaddr_in address;
     if (!read_url(url, &address)) {
         explain(why, "telemetry.lcm: found ", url, 0);
-        mct_message_add(why, "; allowed udpm://ADDRESS:PORT?ttl=N");
+        mct_message_add(why, "; allowed udpm://ADDRESS:PORT?ttl=N with an address of 224.0.0.0 to 239.255.255.255");
         return MCT_ERROR_ARGUMENT;
     }
     const int reason = find_route(&address);

@@ -40,10 +40,8 @@ typedef struct mct_controller {
     mct_real energy_shift;                       /**< learned: added to the energy aimed at [J] */
     mct_real largest_shift;                      /**< [J] */
     mct_real last_angle;                         /**< of the pendulum at the last tick [rad] */
-    mct_real excess;                             /**< learned: gravity's acceleration is (1 + excess) times the model's */
-    mct_real information;                        /**< of the samples it was learned from */
+    mct_real information;                        /**< of the samples that the observer's excess was learned from */
     mct_real memory;                             /**< bound of information: old samples fade */
-    mct_real gravity_slope;                      /**< model's angular acceleration per sine of the angle [rad/s^2] */
     mct_real direction;                          /**< of pumping, +1 or -1 */
     mct_real still;                              /**< rate below which the direction is kept [rad/s] */
     mct_real swing_acceleration;                 /**< of a cart [m/s^2] */

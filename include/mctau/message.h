@@ -1,11 +1,11 @@
 /**
  * @file message.h
- * A sentence of bounded length, put together without stdio: what went wrong, where, what was found, what is allowed.
- * Text that does not fit is cut and ends in "...". Control characters and bytes that are not UTF-8 are shown as '?', so
- * that whatever a file contained, a message is one line of valid text.
+ * A sentence of bounded length, put together without stdio: what went wrong, where, what was found, what is
+ * allowed. Text that does not fit is cut and ends in "...". Control characters and bytes that are not UTF-8
+ * are shown as '?', so that whatever a file contained, a message is one line of valid text.
  *
- * A NULL message is ignored: who does not want to know why passes NULL. Cost: linear in the text; a number takes some
- * 20 us and 3 kB of stack. Thread-safe on different messages.
+ * A NULL message is ignored: who does not want to know why passes NULL. Cost: linear in the text; a number
+ * takes some 20 us and 3 kB of stack. Thread-safe on different messages.
  */
 #ifndef MCTAU_MESSAGE_H
 #define MCTAU_MESSAGE_H

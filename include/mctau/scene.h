@@ -80,18 +80,20 @@ typedef struct {
 
 #define MCT_SCENE_TABLE_COUNT 6
 /**
- * [scene], [controller], [input], [sensors], [variation], [telemetry]. The tables [parameters], [effects], [initial] and
- * [weights], and the encoders' keys of [sensors], follow from the system's descriptor: parameters; mct_effects; names of
- * states (the current with an inductive motor only); names of coordinates and rates; mct_coordinate.encoder.
+ * [scene], [controller], [input], [sensors], [variation], [telemetry]. The tables [parameters], [effects],
+ * [initial] and [weights], and the encoders' keys of [sensors], follow from the system's descriptor:
+ * parameters; mct_effects; names of states (the current with an inductive motor only); names of coordinates
+ * and rates; mct_coordinate.encoder.
  *
- * The choices of scene.system and scene.stepper are the names in mct_systems and mct_steppers; `choices` of these two fields
- * is NULL. Texts are empty by default but for scene.hal, "sim"; lists are empty. A scene must name its system; the stepper
- * it leaves out is the most accurate one that suits.
+ * The choices of scene.system and scene.stepper are the names in mct_systems and mct_steppers; `choices` of
+ * these two fields is NULL. Texts are empty by default but for scene.hal, "sim"; lists are empty. A scene
+ * must name its system; the stepper it leaves out is the most accurate one that suits.
  */
 extern const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT];
 
 /**
- * Fills a scene with the defaults of a system: nothing but descriptors decides. Thread-safe, as all functions here.
+ * Fills a scene with the defaults of a system: nothing but descriptors decides. Thread-safe, as all functions
+ * here.
  * @param scene   written, all of it
  * @param system  index into mct_systems, 0 to MCT_SYSTEM_COUNT - 1
  */
@@ -99,45 +101,52 @@ void mct_scene_defaults(mct_scene *scene, int system);
 
 /** One value given from outside the file, as by `--set table.key=value`. */
 typedef struct {
-    const char *assignment; /**< "table.key=value"; a text or a name may go without quotes; kept by the caller during the call */
+    const char *assignment; /**< "table.key=value"; a text or a name may go without quotes */
     const char *origin;     /**< what messages call it, as "--set" */
 } mct_override;
 
 /**
- * Reads a scene from text. Fixed allocation, some 25 kB of stack; the text is not kept. Well below a millisecond.
+ * Reads a scene from text. Fixed allocation, some 25 kB of stack; the text is not kept. Well below a
+ * millisecond.
  *
- * Text: a strict subset of TOML 1.0 (tables, `table.key = value` ahead of the first of them, numbers, booleans, texts of one
- * line, lists of numbers, comments), at most 1 MiB. Numbers are correctly rounded. A key that nothing would read is refused:
- * one of [input] that the chosen kind does not use, the initial current of a motor that has none.
+ * Text: a strict subset of TOML 1.0 (tables, `table.key = value` ahead of the first of them, numbers,
+ * booleans, texts of one line, lists of numbers, comments), at most 1 MiB. Numbers are correctly rounded. A
+ * key that nothing would read is refused: one of [input] that the chosen kind does not use, the initial
+ * current of a motor that has none.
  *
- * Order of reading does not matter to the writer of a scene: the system is looked up first, then its defaults are filled in,
- * then the file's values, then the overrides in their order.
+ * Order of reading does not matter to the writer of a scene: the system is looked up first, then its defaults
+ * are filled in, then the file's values, then the overrides in their order.
  *
  * @param text, length  the scene, UTF-8; need not be NUL-terminated
- * @param origin        what messages call the text: a file name; an override's origin stands in place of file and line
+ * @param origin        what messages call the text: a file name; an override's origin stands in its place
  * @param overrides, override_count
  * @param scene         written on success only
- * @param why           on failure one sentence: "origin:line: table.key: found ...; allowed ..."; cleared on success; may be NULL
- * @return MCT_OK; MCT_ERROR_SYNTAX (not the subset), MCT_ERROR_RANGE (unknown key, wrong type, out of range, not finite,
- *         unknown name), MCT_ERROR_BOUND (more keys or a longer text than the reader holds), MCT_ERROR_UNSUITED (checks of mct_scene_check)
+ * @param why           on failure one sentence: "origin:line: table.key: found ...; allowed ..."; cleared on
+ *                      success; may be NULL
+ * @return MCT_OK; MCT_ERROR_SYNTAX (not the subset), MCT_ERROR_RANGE (unknown key, wrong type, out of range,
+ *         not finite, unknown name), MCT_ERROR_BOUND (more keys or a longer text than the reader holds),
+ *         MCT_ERROR_UNSUITED (checks of mct_scene_check)
  */
 mct_status mct_scene_read(const char *text, size_t length, const char *origin, const mct_override *overrides,
                           int override_count, mct_scene *scene, mct_message *why);
 
 /**
- * Checks what single keys cannot say: that the stepper suits the system and the effects, that it can follow the motor's
- * time constant at this step, that a controller has a motor and encoders, that [input] and [controller] are not both
- * given, that lists of times rise and match their values, that the duration is a whole number of ticks; and that every value
- * is within its range. Called by mct_scene_read; call it after changing a scene by hand.
+ * Checks what single keys cannot say: that the stepper suits the system and the effects, that it can follow
+ * the motor's time constant at this step, that a controller has a motor and encoders, that [input] and
+ * [controller] are not both given, that lists of times rise and match their values, that the duration is a
+ * whole number of ticks; and that every value is within its range. Called by mct_scene_read; call it after
+ * changing a scene by hand.
  * @param why  on failure one sentence: "table.key: found ...; allowed ..."; may be NULL
- * @return MCT_OK; MCT_ERROR_RANGE, MCT_ERROR_BOUND (a single value), MCT_ERROR_UNSUITED (values that do not go together)
+ * @return MCT_OK; MCT_ERROR_RANGE, MCT_ERROR_BOUND (a single value), MCT_ERROR_UNSUITED (values that do not go
+ *         together)
  */
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why);
 
 /**
- * Draws the parameters of a plant that differs from its model: each parameter but gravity, gear_ratio and supply_voltage is
- * multiplied by 1 + spread * u, u uniform in [-1, 1), a function of (variation_seed, index of the parameter) alone, and
- * kept within its range. The controller keeps the scene as written: it does not know.
+ * Draws the parameters of a plant that differs from its model: each parameter that is not known exactly anyhow
+ * (gravity, lengths, gear ratio, supply voltage are) is multiplied by 1 + spread * u, u uniform in [-1, 1), a function of (variation_seed, index
+ * of the parameter) alone, and kept within its range. The controller keeps the scene as written: it does not
+ * know.
  * @param scene  checked
  * @param plant  written: the scene with other parameters; may be the scene itself
  */

@@ -114,8 +114,8 @@ MCT_INLINE void mct_sincos_turn32(int32_t binary_angle, float *s, float *c) {
     uint32_t quadrant;
     const int32_t rest = mct_turn32_rest(binary_angle, &quadrant);
     const int32_t low = ((rest + 0x8000) & 0xffff) - 0x8000;
-    const float coarse = (float)(rest - low); /* 15 bits each: their products with the unit's leading 9 bits */
-    const float fine = (float)low;            /* are exact, and show what the rounding of r has dropped */
+    const float coarse = (float)(rest - low); /* 15 bits each: products with the 9 leading bits of the */
+    const float fine = (float)low;            /* unit are exact, and show what the rounding of r dropped */
     const float r = (float)rest * 0x1.921fb6p-30f;
     const float tail = ((coarse * 0x1.92p-30f - r) + fine * 0x1.92p-30f) + (float)rest * 0x1.fb5444p-42f;
     mct_sincos_quadrant_f32(r, tail, quadrant, s, c);

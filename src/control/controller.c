@@ -142,7 +142,7 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
     const double frequency = mct_sqrt(0.5 * lift / inertia);
     controller->largest_shift = (mct_real)(scene->energy_band * lift);
     const double slope = model.A[(system->coordinate_count + angle) * model.states + angle];
-    controller->gravity_slope = (mct_real)slope;
+    controller->observer.gravity_slope = (mct_real)slope;
     controller->information = (mct_real)(slope * slope * 5);
     controller->memory = (mct_real)(slope * slope * 2 / scene->dt);
     controller->energy_scale = (mct_real)(1 / (scene->energy_band * lift));
@@ -203,21 +203,18 @@ static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real w
 }
 
 /*
- * Learns by which fraction gravity's acceleration exceeds the model's: least squares of what the observer had to correct, on
- * the model's gravity, with a prior of zero. A ratio that is off by 10 % would miss the catch region by far.
+ * Learns by which fraction gravity's acceleration exceeds the model's: least squares of what the observer still had to correct,
+ * on the model's gravity, with a prior of zero; the observer takes it over. A ratio that is off by 10 % would miss the catch
+ * region by far.
  */
 static void learn_gravity(mct_controller *controller)
 {
-    const mct_observer *observer = &controller->observer;
-    const int angle = controller->system->upright_coordinate;
-    mct_real s, c;
-    mct_sincos(observer->x[angle], &s, &c);
-    const mct_real gravity = controller->gravity_slope * s;
+    mct_observer *observer = &controller->observer;
+    const mct_real gravity = observer->gravity;
     const mct_real information = controller->information + gravity * gravity;
     controller->information = information < controller->memory ? information : controller->memory;
-    controller->excess +=
-        gravity * (observer->correction[angle] - controller->excess * gravity) / controller->information;
-    controller->excess = clamp(controller->excess, MCT_R(0.5));
+    const mct_real correction = observer->correction[controller->system->upright_coordinate];
+    observer->excess = clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
 }
 
 /* The wheel's reaction does the work -torque arm_rate on the arm. */
@@ -225,7 +222,7 @@ static mct_real swing_up_reaction_wheel(mct_controller *controller)
 {
     const mct_reaction_wheel_constants *k = &controller->constants.reaction_wheel;
     learn_gravity(controller);
-    const mct_real inertia = k->arm_inertia / (1 + controller->excess);
+    const mct_real inertia = k->arm_inertia / (1 + controller->observer.excess);
     return controller->limit * pumping(controller, inertia, k->weight_moment, -controller->observer.x[2]);
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "mctau/matrix.h"
+#include "mctau/sincos.h"
 
 #define PI 3.141592653589793238463
 #define TURN (2 * PI)
@@ -71,6 +72,11 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
     }
     mct_real a[MCT_MAX_COORDINATES];
     observer->system->accelerate(observer->constants, observer->effects, observer->x, input, a);
+    const int upright = observer->system->upright_coordinate;
+    mct_real s, c;
+    mct_sincos(observer->x[upright], &s, &c);
+    observer->gravity = observer->gravity_slope * s;
+    a[upright] += observer->excess * observer->gravity;
     for (int i = 0; i < n; i++) {
         mct_encoder_track *track = &observer->encoders[i];
         mct_real *rate = &observer->x[n + i];

@@ -36,7 +36,9 @@ void mct_message_add_allowed(mct_message *message, const mct_scene_key *key, con
     int count = 0;
     switch (field->kind) {
     case MCT_FIELD_BOOLEAN:
-        mct_message_add(message, key->effect != NULL && (key->effect->mask & ~system->effects) ? "false" : "true or false");
+        mct_message_add(message, key->effect != NULL && (key->effect->mask & ~system->effects)
+                                     ? "false"
+                                     : "true or false");
         break;
     case MCT_FIELD_CHOICE:
         for (int32_t i = 0; mct_choice_name(field, i) != NULL; i++) {
@@ -72,7 +74,8 @@ bool mct_field_allows(const mct_field *field, double value)
     return value >= field->minimum && value <= field->maximum; /* a NaN is neither */
 }
 
-static mct_status refuse_number(const mct_scene_key *key, const mct_system *system, double value, mct_message *sentence)
+static mct_status refuse_number(const mct_scene_key *key, const mct_system *system, double value,
+                                mct_message *sentence)
 {
     mct_message_add(sentence, "found ");
     mct_message_add_number(sentence, value);
@@ -143,7 +146,8 @@ static mct_status examine_keys(const mct_scene *scene, const mct_system *system,
     for (int table = 0; table < MCT_TABLE_COUNT; table++) {
         for (int i = 0; i < mct_key_count(table, system); i++) {
             const mct_scene_key key = mct_key_at(table, system, i);
-            const mct_status status = key.effect != NULL ? MCT_OK : examine_key(scene, &key, system, sentence);
+            const mct_status status =
+                key.effect != NULL ? MCT_OK : examine_key(scene, &key, system, sentence);
             if (status != MCT_OK) {
                 blame->table = mct_table_name(table);
                 blame->key = key.field.name;
@@ -163,7 +167,8 @@ static mct_status examine_effects(const mct_scene *scene, const mct_system *syst
     for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
         const mct_scene_key key = mct_key_at(MCT_TABLE_EFFECTS, system, i);
         const uint32_t bits = scene->effects & key.effect->mask;
-        const bool is_choice = bits == key.effect->bits[0] || bits == key.effect->bits[1] || bits == key.effect->bits[2];
+        const bool is_choice =
+            bits == key.effect->bits[0] || bits == key.effect->bits[1] || bits == key.effect->bits[2];
         if (!is_choice || (bits & ~system->effects)) {
             blame->key = key.field.name;
             mct_message_add(sentence, is_choice ? "found what " : "found more than one; ");
@@ -294,8 +299,9 @@ static mct_status examine_controller(const mct_scene *scene, mct_blame *blame, m
         return MCT_ERROR_UNSUITED;
     }
     if (scene->input != MCT_INPUT_NONE) {
-        mct_message_add(sentence, "found a controller together with an open-loop [input]; allowed one of them, "
-                                  "the other's kind being none");
+        mct_message_add(sentence,
+                        "found a controller together with an open-loop [input]; allowed one of them, "
+                        "the other's kind being none");
         return MCT_ERROR_UNSUITED;
     }
     return MCT_OK;

@@ -6,7 +6,8 @@
 
 /* --- big integers: little-endian words, as many as the largest shifted operand of a comparison needs --- */
 
-/* D < 10^781 (2595 bits), 5^1105 times a significand (2620 bits), either shifted by at most 2080 bits: below 5120. */
+/* D < 10^781 (2595 bits), 5^1105 times a significand (2620 bits), either shifted by at most 2080 bits: below
+ * 5120. */
 enum { WORDS = 160 };
 
 typedef struct {
@@ -132,7 +133,8 @@ static uint64_t significand_of(uint64_t bits, int *exponent)
 
 /* --- text to double --- */
 
-/* The exact middle of two doubles has at most 768 significant digits, so of what follows only "zero or not" matters. */
+/* The exact middle of two doubles has at most 768 significant digits, so of what follows only "zero or not"
+ * matters. */
 enum { DIGITS = 780 };
 
 typedef struct {
@@ -228,10 +230,14 @@ static const char bad_underscore[] = "an underscore in a number must stand betwe
 
 static int digit_value(char c)
 {
-    return mct_is_digit(c) ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : 99;
+    return mct_is_digit(c)        ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : 99;
 }
 
-/* End of the digits that begin at `position`; sets `fault` when there is none or an underscore is out of place. */
+/* End of the digits that begin at `position`; sets `fault` when there is none or an underscore is out of
+ * place. */
 static size_t skip_digits(mct_span text, size_t position, int base, const char *none, const char **fault)
 {
     const size_t start = position;
@@ -291,11 +297,13 @@ const char *mct_number_read(mct_span text, mct_number *number)
         number->value = double_of_bits(infinity_bits | quiet | (uint64_t)negative << 63);
         return NULL;
     }
-    if (unsigned_text.length == 0 || (!mct_is_digit(unsigned_text.start[0]) && unsigned_text.start[0] != '.')) {
+    if (unsigned_text.length == 0 ||
+        (!mct_is_digit(unsigned_text.start[0]) && unsigned_text.start[0] != '.')) {
         return not_a_number;
     }
 
-    const char prefix = unsigned_text.length > 1 && unsigned_text.start[0] == '0' ? unsigned_text.start[1] : '\0';
+    const char prefix =
+        unsigned_text.length > 1 && unsigned_text.start[0] == '0' ? unsigned_text.start[1] : '\0';
     const int base = prefix == 'x' ? 16 : prefix == 'o' ? 8 : prefix == 'b' ? 2 : 10;
     if (base != 10) {
         if (has_sign) {
@@ -339,7 +347,8 @@ const char *mct_number_read(mct_span text, mct_number *number)
     size_t end = fraction_end;
     int64_t exponent = 0;
     if (end < text.length && (text.start[end] == 'e' || text.start[end] == 'E')) {
-        const bool signed_exponent = end + 1 < text.length && (text.start[end + 1] == '+' || text.start[end + 1] == '-');
+        const bool signed_exponent =
+            end + 1 < text.length && (text.start[end + 1] == '+' || text.start[end + 1] == '-');
         const bool negative_exponent = signed_exponent && text.start[end + 1] == '-';
         const size_t exponent_start = end + (signed_exponent ? 2 : 1);
         end = skip_digits(text, exponent_start, 10, "an exponent needs digits", &fault);
@@ -384,7 +393,8 @@ const char *mct_number_read(mct_span text, mct_number *number)
 
 /* --- double to text --- */
 
-/* value * 10^(DIGITS - 1 - power), rounded half to even: `power` is floor(log10(value)) when it has MCT_NUMBER_DIGITS digits. */
+/* value * 10^(DIGITS - 1 - power), rounded half to even: `power` is floor(log10(value)) when it has
+ * MCT_NUMBER_DIGITS digits. */
 static uint64_t scaled_digits(uint64_t significand, int exponent, int power)
 {
     const int scale = MCT_NUMBER_DIGITS - 1 - power;

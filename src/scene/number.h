@@ -1,10 +1,11 @@
 /*
- * Numbers as text: TOML's grammar to double, correctly rounded, and double to a few decimal digits, correctly rounded.
+ * Numbers as text: TOML's grammar to double, correctly rounded, and double to a few decimal digits, correctly
+ * rounded.
  *
- * Short numbers take Clinger's exact path (both factors are doubles, one rounding). All others are decided by exact
- * comparison of big integers in fixed storage: the double is found by bisection of its bit pattern, which rises with its
- * value. Some 20 us, at init only; no table, no heap, any number of digits. Source: W. D. Clinger, How to read floating
- * point numbers accurately (PLDI 1990).
+ * Short numbers take Clinger's exact path (both factors are doubles, one rounding). All others are decided by
+ * exact comparison of big integers in fixed storage: the double is found by bisection of its bit pattern,
+ * which rises with its value. Some 20 us, at init only; no table, no heap, any number of digits. Source: W.
+ * D. Clinger, How to read floating point numbers accurately (PLDI 1990).
  */
 #ifndef MCT_SCENE_NUMBER_H
 #define MCT_SCENE_NUMBER_H

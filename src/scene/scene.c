@@ -84,7 +84,8 @@ static int edit_distance(mct_span a, mct_span b)
         for (size_t j = 1; j <= b.length; j++) {
             const int replaced = last[j - 1] + (a.start[i - 1] != b.start[j - 1]);
             row[j] = least(replaced, 1 + least(last[j], row[j - 1]));
-            const bool swapped = i > 1 && j > 1 && a.start[i - 1] == b.start[j - 2] && a.start[i - 2] == b.start[j - 1];
+            const bool swapped =
+                i > 1 && j > 1 && a.start[i - 1] == b.start[j - 2] && a.start[i - 2] == b.start[j - 1];
             row[j] = swapped ? least(row[j], before[j - 2] + 1) : row[j];
         }
         int *const oldest = before;
@@ -221,7 +222,8 @@ static mct_status refuse_value(const reader *self, given value, const mct_scene_
                                mct_status status)
 {
     const mct_toml_kind kind = value.entry->kind;
-    const bool is_number = (kind == MCT_TOML_INTEGER || kind == MCT_TOML_REAL) && is_finite(value.entry->number);
+    const bool is_number =
+        (kind == MCT_TOML_INTEGER || kind == MCT_TOML_REAL) && is_finite(value.entry->number);
     begin_key(self, value);
     mct_message_add(self->why, "found ");
     add_shown(self->why, value.entry->source);
@@ -237,8 +239,8 @@ static mct_status refuse_value(const reader *self, given value, const mct_scene_
 static mct_status refuse_type(const reader *self, given value, const mct_scene_key *key)
 {
     static const char *const found[] = {
-        [MCT_TOML_INTEGER] = ", a number",  [MCT_TOML_REAL] = ", a number", [MCT_TOML_BOOLEAN] = ", a boolean",
-        [MCT_TOML_TEXT] = ", a text",       [MCT_TOML_LIST] = ", a list",
+        [MCT_TOML_INTEGER] = ", a number", [MCT_TOML_REAL] = ", a number", [MCT_TOML_BOOLEAN] = ", a boolean",
+        [MCT_TOML_TEXT] = ", a text",      [MCT_TOML_LIST] = ", a list",
     };
     static const char *const expected[] = {
         [MCT_FIELD_REAL] = ", where a number belongs",
@@ -258,7 +260,8 @@ static mct_status refuse_type(const reader *self, given value, const mct_scene_k
     return MCT_ERROR_RANGE;
 }
 
-static mct_status refuse_out_of_range(const reader *self, given value, const mct_scene_key *key, double number)
+static mct_status refuse_out_of_range(const reader *self, given value, const mct_scene_key *key,
+                                      double number)
 {
     return refuse_value(self, value, key, is_finite(number) ? "" : ", which is not finite", MCT_ERROR_RANGE);
 }
@@ -434,7 +437,8 @@ static mct_status check_overrides(const reader *self)
     for (int i = 0; i < self->override_count && status == MCT_OK; i++) {
         mct_toml_entry entry;
         const char *const assignment = self->overrides[i].assignment;
-        status = mct_toml_split(assignment != NULL ? assignment : "", self->overrides[i].origin, &entry, self->why);
+        status = mct_toml_split(assignment != NULL ? assignment : "", self->overrides[i].origin, &entry,
+                                self->why);
     }
     return status;
 }
@@ -494,8 +498,8 @@ static mct_status refuse_idle_keys(const reader *self)
             const char *const name = key.field.name;
             const bool is_input = mct_text_equal(mct_table_name(table), "input");
             const bool idle_input = is_input && !mct_input_reads(self->scene.input, name);
-            const bool idle_state =
-                table == MCT_TABLE_INITIAL && i >= mct_state_count(self->system, mct_scene_effects(&self->scene));
+            const bool idle_state = table == MCT_TABLE_INITIAL &&
+                                    i >= mct_state_count(self->system, mct_scene_effects(&self->scene));
             if (!idle_input && !idle_state) {
                 continue;
             }
@@ -554,7 +558,8 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
     self.overrides = overrides;
     self.override_count = overrides != NULL ? override_count : 0;
     self.why = why;
-    mct_status status = mct_toml_read(text != NULL ? text : "", text != NULL ? length : 0, self.origin, &self.toml, why);
+    mct_status status =
+        mct_toml_read(text != NULL ? text : "", text != NULL ? length : 0, self.origin, &self.toml, why);
     status = status != MCT_OK ? status : check_overrides(&self);
     status = status != MCT_OK ? status : read_system(&self);
     status = status != MCT_OK ? status : set_all(&self);
@@ -575,19 +580,23 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
 
 /* --- variation --- */
 
-/* Constants of nature, of the design (a count of teeth) or of the power supply: known exactly, or no part of the plant. */
-static bool is_certain(const char *parameter)
+/*
+ * What is known exactly enough to be left alone: gravity, lengths, counts of teeth, the supply. Masses, inertias, the motor
+ * and friction are not.
+ */
+static bool is_certain(const mct_field *parameter)
 {
-    static const char *const names[] = {"gravity", "gear_ratio", "supply_voltage"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (mct_text_equal(names[i], parameter)) {
+    static const char *const units[] = {"m/s^2", "m", "", "V"};
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+        if (mct_text_equal(units[i], parameter->unit)) {
             return true;
         }
     }
     return false;
 }
 
-/* The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit of the argument moves every bit of the result. */
+/* The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit of the argument moves every bit of the
+ * result. */
 static uint64_t mix(uint64_t z)
 {
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
@@ -610,10 +619,11 @@ void mct_scene_vary(const mct_scene *scene, mct_scene *plant)
     *plant = *scene;
     for (int i = 0; i < system->parameter_count; i++) {
         const mct_field *const field = &system->parameters[i];
-        if (is_certain(field->name)) {
+        if (is_certain(field)) {
             continue;
         }
-        const double varied = scene->parameters[i] * (1 + scene->variation_spread * uniform(scene->variation_seed, i));
+        const double varied =
+            scene->parameters[i] * (1 + scene->variation_spread * uniform(scene->variation_seed, i));
         const double raised = varied < field->minimum ? field->minimum : varied;
         plant->parameters[i] = raised > field->maximum ? field->maximum : raised;
     }

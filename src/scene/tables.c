@@ -7,17 +7,16 @@
 /* --- the fixed tables --- */
 
 #define PLACE(member) offsetof(mct_scene, member)
-#define REAL(name, unit, minimum, maximum, standard, member, doc) \
+#define REAL(name, unit, minimum, maximum, standard, member, doc)                                            \
     {name, unit, doc, MCT_FIELD_REAL, minimum, maximum, standard, NULL, PLACE(member)}
-#define INTEGER(name, unit, minimum, maximum, standard, member, doc) \
+#define INTEGER(name, unit, minimum, maximum, standard, member, doc)                                         \
     {name, unit, doc, MCT_FIELD_INTEGER, minimum, maximum, standard, NULL, PLACE(member)}
-#define BOOLEAN(name, standard, member, doc) \
+#define BOOLEAN(name, standard, member, doc)                                                                 \
     {name, "", doc, MCT_FIELD_BOOLEAN, 0, 1, standard, NULL, PLACE(member)}
-#define CHOICE(name, choices, standard, member, doc) \
+#define CHOICE(name, choices, standard, member, doc)                                                         \
     {name, "", doc, MCT_FIELD_CHOICE, 0, 0, standard, choices, PLACE(member)}
-#define TEXT(name, member, doc) \
-    {name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member)}
-#define LIST(name, unit, minimum, maximum, member, doc) \
+#define TEXT(name, member, doc) {name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member)}
+#define LIST(name, unit, minimum, maximum, member, doc)                                                      \
     {name, unit, doc, MCT_FIELD_LIST, minimum, maximum, 0, NULL, PLACE(member)}
 
 #define LONGEST 1e7       /* [s] */
@@ -31,30 +30,37 @@ static const char *const faults[] = {"none", "nan", "silent", "frozen", NULL};
 /* The names of systems and steppers stand in mct_systems and mct_steppers: see mct_choice_name. */
 static const mct_field scene_fields[] = {
     CHOICE("system", NULL, 0, system, "what is simulated; must be given"),
-    CHOICE("stepper", NULL, MCT_STEPPER_RK4, stepper, "how; left out: the most accurate that suits system and effects"),
+    CHOICE("stepper", NULL, MCT_STEPPER_RK4, stepper,
+           "how; left out: the most accurate that suits system and effects"),
     REAL("dt", "s", 1e-7, 1, 0.001, dt, "the tick: one reading of the sensors, one command, one record"),
     INTEGER("substeps", "", 1, 1000, 1, substeps, "steps of the simulation within a tick"),
     REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
-    CHOICE("precision", precisions, MCT_PRECISION_DOUBLE, precision, "scalar of the simulation and the controller"),
+    CHOICE("precision", precisions, MCT_PRECISION_DOUBLE, precision,
+           "scalar of the simulation and the controller"),
     TEXT("hal", hal, "what stands in for the hardware"),
     BOOLEAN("realtime", 0, realtime, "paced by the clock instead of by the simulation"),
 };
 
 static const mct_field controller_fields[] = {
     CHOICE("kind", controllers, MCT_CONTROLLER_NONE, controller, "what decides the voltage"),
-    REAL("observer_bandwidth", "rad/s", 1, 1e4, 150, observer_bandwidth, "of the velocity estimate"),
-    REAL("energy_band", "", 0.001, 10, 0.1, energy_band,
+    REAL("observer_bandwidth", "rad/s", 1, 1e4, 80, observer_bandwidth, "of the velocity estimate"),
+    REAL("energy_band", "", 0.001, 10, 0.05, energy_band,
          "fraction of the energy from hanging to upright over which pumping fades out"),
-    REAL("capture", "", 0.05, 0.95, 0.6, capture,
-         "fraction of the region from which the voltage can still catch the upright at which balancing takes over"),
-    REAL("track_half_length", "m", 0.01, 1000, 0.4, track_half_length, "a coordinate that is a length stays within +- this"),
-    REAL("overspeed", "rad/s", 1, 1e6, 2000, overspeed, "rate of an angle beyond which the supervisor cuts the voltage"),
+    REAL("capture", "", 0.05, 0.95, 0.5, capture,
+         "fraction of the region from which the voltage can still catch the upright at which balancing takes "
+         "over"),
+    REAL("track_half_length", "m", 0.01, 1000, 0.4, track_half_length,
+         "a coordinate that is a length stays within +- this"),
+    REAL("overspeed", "rad/s", 1, 1e6, 2000, overspeed,
+         "rate of an angle beyond which the supervisor cuts the voltage"),
     REAL("input_weight", "", 1e-6, 1e6, 1, input_weight, "cost of the voltage; larger is gentler"),
 };
 
 static const mct_field input_fields[] = {
-    CHOICE("kind", inputs, MCT_INPUT_NONE, input, "open-loop input: volts with a motor, else newtons or newton metres"),
-    REAL("value", "", -LARGEST_INPUT, LARGEST_INPUT, 0, input_value, "of a constant; of a sine, what it swings about"),
+    CHOICE("kind", inputs, MCT_INPUT_NONE, input,
+           "open-loop input: volts with a motor, else newtons or newton metres"),
+    REAL("value", "", -LARGEST_INPUT, LARGEST_INPUT, 0, input_value,
+         "of a constant; of a sine, what it swings about"),
     REAL("amplitude", "", 0, LARGEST_INPUT, 0, input_amplitude, "of a sine"),
     REAL("frequency", "rad/s", 0, 1e6, 1, input_frequency, "of a sine"),
     LIST("times", "s", 0, LONGEST, input_times, "of steps, rising; zero before the first"),
@@ -74,7 +80,8 @@ static const mct_field sensor_fields[] = {
 };
 
 static const mct_field variation_fields[] = {
-    REAL("spread", "", 0, 0.5, 0, variation_spread, "largest relative change of a parameter that the controller is not told"),
+    REAL("spread", "", 0, 0.5, 0, variation_spread,
+         "largest relative change of a parameter that the controller is not told"),
     INTEGER("seed", "", 0, INT32_MAX, 0, variation_seed, "which of the varied plants"),
 };
 
@@ -89,7 +96,8 @@ const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT] = {
     TABLE("scene", scene_fields, "what is simulated, how, how long"),
     TABLE("controller", controller_fields, "closed loop"),
     TABLE("input", input_fields, "open loop, held over each tick"),
-    TABLE("sensors", sensor_fields, "encoders and what is wrong with them; counts per turn or metre by the system's encoders"),
+    TABLE("sensors", sensor_fields,
+          "encoders and what is wrong with them; counts per turn or metre by the system's encoders"),
     TABLE("variation", variation_fields, "a plant that differs from its model"),
     TABLE("telemetry", telemetry_fields, "who is told"),
 };
@@ -105,7 +113,8 @@ enum { TABLE_SCENE, TABLE_SENSORS = 3 };
 const char *mct_table_name(int table)
 {
     static const char *const names[] = {"parameters", "effects", "initial", "weights"};
-    return table < MCT_SCENE_TABLE_COUNT ? mct_scene_tables[table].name : names[table - MCT_SCENE_TABLE_COUNT];
+    return table < MCT_SCENE_TABLE_COUNT ? mct_scene_tables[table].name
+                                         : names[table - MCT_SCENE_TABLE_COUNT];
 }
 
 int mct_key_count(int table, const mct_system *system)
@@ -230,7 +239,8 @@ double mct_motor_stiffness(const mct_scene *scene)
         return 0;
     }
     const double h = scene->dt / scene->substeps;
-    return h * scene->parameters[system->resistance_parameter] / scene->parameters[system->inductance_parameter];
+    return h * scene->parameters[system->resistance_parameter] /
+           scene->parameters[system->inductance_parameter];
 }
 
 bool mct_stepper_suits(const mct_scene *scene, int stepper)
@@ -262,7 +272,8 @@ void mct_scene_defaults(mct_scene *scene, int system)
     for (int table = 0; table < MCT_TABLE_COUNT; table++) {
         for (int i = 0; i < mct_key_count(table, descriptor); i++) {
             const mct_scene_key key = mct_key_at(table, descriptor, i);
-            if (table != MCT_TABLE_EFFECTS && key.field.kind != MCT_FIELD_TEXT && key.field.kind != MCT_FIELD_LIST) {
+            if (table != MCT_TABLE_EFFECTS && key.field.kind != MCT_FIELD_TEXT &&
+                key.field.kind != MCT_FIELD_LIST) {
                 mct_key_set(scene, &key, key.field.standard);
             }
         }

@@ -1,6 +1,6 @@
 /*
- * Every key that a scene of a system may have, as one list of tables: the fixed ones of mct_scene_tables and those that
- * follow from the system's descriptor. Reader, check, listings and the compile step walk it.
+ * Every key that a scene of a system may have, as one list of tables: the fixed ones of mct_scene_tables and
+ * those that follow from the system's descriptor. Reader, check, listings and the compile step walk it.
  */
 #ifndef MCT_SCENE_TABLES_H
 #define MCT_SCENE_TABLES_H
@@ -27,7 +27,8 @@ const char *mct_table_name(int table);
 int mct_key_count(int table, const mct_system *system);
 mct_scene_key mct_key_at(int table, const mct_system *system, int number);
 
-/* Name of a choice by its index, or NULL beyond the last. Systems and steppers get their names from their own tables. */
+/* Name of a choice by its index, or NULL beyond the last. Systems and steppers get their names from their own
+ * tables. */
 const char *mct_choice_name(const mct_field *field, int32_t index);
 
 /* A key's value as a number (booleans 0 or 1, choices their index); not for texts and lists. */

@@ -54,7 +54,8 @@ static inline bool mct_is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Bytes of the UTF-8 character at the start; 0 when it is not valid (overlong, a surrogate, beyond U+10FFFF, cut off). */
+/* Bytes of the UTF-8 character at the start; 0 when it is not valid (overlong, a surrogate, beyond U+10FFFF,
+ * cut off). */
 static inline size_t mct_utf8_length(const char *text, size_t length)
 {
     const unsigned char first = length > 0 ? (unsigned char)text[0] : 0xFF;

@@ -109,7 +109,8 @@ static void skip_comment(scanner *self)
     }
 }
 
-/* Refuses what may stand nowhere in a TOML text: invalid UTF-8, control characters. Hence nothing below meets them. */
+/* Refuses what may stand nowhere in a TOML text: invalid UTF-8, control characters. Hence nothing below meets
+ * them. */
 static mct_status check_characters(const scanner *start)
 {
     scanner self = *start;
@@ -207,7 +208,8 @@ static int32_t read_hexadecimal(const scanner *self, size_t offset, size_t count
     return value > 0x10FFFF || (value >= 0xD800 && value < 0xE000) ? -1 : (int32_t)value;
 }
 
-/* The character behind a backslash and how many bytes of the text it takes, backslash included; -1 when there is none such. */
+/* The character behind a backslash and how many bytes of the text it takes, backslash included; -1 when there
+ * is none such. */
 static int32_t read_escape(const scanner *self, size_t *size)
 {
     static const char letters[] = "btnfr\"\\";
@@ -241,7 +243,8 @@ static mct_status skip_text(scanner *self)
         }
         size_t size = 1;
         if (quote == '"' && peek(self, 0) == '\\' && read_escape(self, &size) < 0) {
-            return fault(self, "not an escape; these are: \\b \\t \\n \\f \\r \\\" \\\\ \\uXXXX \\UXXXXXXXX; or use '...'");
+            return fault(self, "not an escape; these are: \\b \\t \\n \\f \\r \\\" \\\\ \\uXXXX \\UXXXXXXXX; "
+                               "or use '...'");
         }
         self->position += size;
     }
@@ -278,7 +281,8 @@ static mct_status read_list(scanner *self, double *values, int32_t capacity, int
             break;
         }
         const mct_span word = peek_word(self);
-        if (c == '"' || c == '\'' || c == '[' || c == '{' || mct_span_is(word, "true") || mct_span_is(word, "false")) {
+        if (c == '"' || c == '\'' || c == '[' || c == '{' || mct_span_is(word, "true") ||
+            mct_span_is(word, "false")) {
             return fault_at(self, self->position, "a list of anything but numbers", outside);
         }
         mct_number number;
@@ -415,7 +419,8 @@ static mct_status read_header(scanner *self, mct_toml *toml, mct_span *table)
     return add_table(self, position, toml, *table);
 }
 
-/* Reads "key =" or "table.key =", and the blanks behind it. `table` is that of the last header, empty ahead of the first. */
+/* Reads "key =" or "table.key =", and the blanks behind it. `table` is that of the last header, empty ahead
+ * of the first. */
 static mct_status read_key(scanner *self, mct_span table, mct_toml_entry *entry)
 {
     const size_t start = self->position;
@@ -470,7 +475,8 @@ static mct_status read_entry(scanner *self, mct_toml *toml, mct_span table)
     for (int i = 0; i < toml->entry_count; i++) {
         const mct_toml_entry *const other = &toml->entries[i];
         if (mct_span_equal(other->table, entry->table) && mct_span_equal(other->key, entry->key)) {
-            status = fault_quoting(&at_key, start, entry->key, " is given a second time; the first is in line ");
+            status =
+                fault_quoting(&at_key, start, entry->key, " is given a second time; the first is in line ");
             mct_message_add_integer(self->why, other->line);
             return status;
         }
@@ -489,7 +495,8 @@ static mct_status read_entry(scanner *self, mct_toml *toml, mct_span table)
     return status;
 }
 
-mct_status mct_toml_read(const char *text, size_t length, const char *origin, mct_toml *toml, mct_message *why)
+mct_status mct_toml_read(const char *text, size_t length, const char *origin, mct_toml *toml,
+                         mct_message *why)
 {
     scanner self = {text, length, 0, 0, 1, origin, why, NULL};
     mct_span table = {text, 0};

@@ -1,8 +1,8 @@
 /*
- * A strict subset of TOML 1.0: tables, bare keys, `table.key = value` ahead of the first table, numbers, booleans, texts of
- * one line, lists of numbers, comments, CRLF, a byte order mark. What it accepts, TOML accepts with the same meaning (but for
- * the mark, of which TOML 1.0 says nothing). What TOML forbids is refused with the reason; what TOML has and the subset has
- * not is refused by saying so.
+ * A strict subset of TOML 1.0: tables, bare keys, `table.key = value` ahead of the first table, numbers,
+ * booleans, texts of one line, lists of numbers, comments, CRLF, a byte order mark. What it accepts, TOML
+ * accepts with the same meaning (but for the mark, of which TOML 1.0 says nothing). What TOML forbids is
+ * refused with the reason; what TOML has and the subset has not is refused by saying so.
  *
  * The text is not copied: entries point into it.
  */
@@ -21,7 +21,13 @@ enum {
     MCT_TOML_LENGTH = 1 << 20   /* bytes of a text */
 };
 
-typedef enum { MCT_TOML_INTEGER, MCT_TOML_REAL, MCT_TOML_BOOLEAN, MCT_TOML_TEXT, MCT_TOML_LIST } mct_toml_kind;
+typedef enum {
+    MCT_TOML_INTEGER,
+    MCT_TOML_REAL,
+    MCT_TOML_BOOLEAN,
+    MCT_TOML_TEXT,
+    MCT_TOML_LIST
+} mct_toml_kind;
 
 typedef struct {
     mct_span table;
@@ -48,16 +54,20 @@ typedef struct {
 } mct_toml;
 
 /* Reads a text. MCT_ERROR_SYNTAX or MCT_ERROR_BOUND, with "origin:line:column: ..." in `why`. */
-mct_status mct_toml_read(const char *text, size_t length, const char *origin, mct_toml *toml, mct_message *why);
+mct_status mct_toml_read(const char *text, size_t length, const char *origin, mct_toml *toml,
+                         mct_message *why);
 
-/* Splits "table.key=value" and leaves the value, without the blanks around it, in `source`. Refuses what no text of TOML may
- * contain. MCT_ERROR_SYNTAX, with "origin: ..." in `why`. */
-mct_status mct_toml_split(const char *assignment, const char *origin, mct_toml_entry *entry, mct_message *why);
+/* Splits "table.key=value" and leaves the value, without the blanks around it, in `source`. Refuses what no
+ * text of TOML may contain. MCT_ERROR_SYNTAX, with "origin: ..." in `why`. */
+mct_status mct_toml_split(const char *assignment, const char *origin, mct_toml_entry *entry,
+                          mct_message *why);
 
-/* Reads `source` of a split assignment as one value. Whoever wants a bare text sets `kind` and `is_bare` instead. */
+/* Reads `source` of a split assignment as one value. Whoever wants a bare text sets `kind` and `is_bare`
+ * instead. */
 mct_status mct_toml_read_value(const char *origin, mct_toml_entry *entry, mct_message *why);
 
-/* The decoded text of a MCT_TOML_TEXT and its length in bytes, which may be more than was written: `capacity`, NUL included. */
+/* The decoded text of a MCT_TOML_TEXT and its length in bytes, which may be more than was written:
+ * `capacity`, NUL included. */
 size_t mct_toml_text(const mct_toml_entry *entry, char *text, size_t capacity);
 
 /* The numbers of a MCT_TOML_LIST, at most `capacity`; returns how many were written. */

@@ -1,6 +1,7 @@
 /*
  * The rules of include/mctau/gauss.h: the engine against the closed forms of the source, as corrected, and
- * against Gauss's principle itself on a spatial chain without a closed form. Equation numbers are the source's.
+ * against Gauss's principle itself on a spatial chain without a closed form. Equation numbers are those of
+ * the source.
  */
 #include <math.h>
 #include <string.h>
@@ -278,7 +279,7 @@ static void test_a_particle_under_no_constraint_feels_none(void) {
     }
 }
 
-/* ---- a spatial chain of universal joints, up to the bounds of the engine, at will on a turning table ---- */
+/* ---- a spatial chain of universal joints, up to the engine's bounds, at will on a turning table ---- */
 
 typedef struct {
     int particles;

@@ -143,6 +143,12 @@ static void test_units_do_not_make_a_matrix_singular(void) {
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_matrix_solve(2, 1, a, b));
     TEST_ASSERT_DOUBLE_WITHIN(1e-14, 1.0, b[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e26, 1e40, b[1]);
+    /* a permutation in such units: the rows' sizes must move with the rows */
+    double permutation[] = {0, 2e-20, 0, 0, 0, 3, 4e20, 0, 0};
+    double c[] = {2e-20 * 5, 3 * 6, 4e20 * 7};
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_matrix_solve(3, 1, permutation, c));
+    const double wanted[] = {7, 5, 6};
+    TEST_ASSERT_EQUAL_DOUBLE_ARRAY(wanted, c, 3);
 }
 
 static void test_a_singular_matrix_is_reported(void) {

@@ -167,7 +167,7 @@ static void test_two_inputs_and_eight_states_are_solved(void) {
 }
 
 static void test_observer_is_the_transposed_regulator(void) {
-    /* a position measured with variance r, driven by acceleration noise: Kalata's relation of the two gains */
+    /* a position measured with variance r, driven by acceleration noise: Kalata's relation of the gains */
     const double h = 1e-2;
     const double q = 4.0;
     const double r = 1e-3;

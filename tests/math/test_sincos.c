@@ -187,7 +187,7 @@ static void test_small_angles_are_their_own_sine(void) {
     }
 }
 
-/* An error below one ulp lets a neighbour fall back by one, also across the seams at odd multiples of pi/4. */
+/* An error below one ulp lets a neighbour fall back by one, also across a seam at an odd multiple of pi/4. */
 static void test_sine_rises_from_quarter_to_quarter_turn_without_a_step_back(void) {
     float before = -1.0f;
     for (int i = -400000; i <= 400000; i++) {

@@ -104,10 +104,28 @@ static void test_the_middle_of_two_doubles_rounds_to_even_and_its_neighbours_do_
 static void test_edges_of_the_range(void)
 {
     static const char *const texts[] = {
-        "0.0", "-0.0", "0e999999999999", "1e-999999999999999999999", "1e99999999999999999999", "4.9e-324", "2.4703282292062327e-324",
-        "2.4703282292062328e-324", "2.2250738585072011e-308", "2.2250738585072014e-308", "1.7976931348623157e308",
-        "1.7976931348623158e308", "1.7976931348623159e308", "179769313486231580793e289", "9007199254740993.0",
-        "9007199254740992.5", "123456789012345678901234567890e-20", "1e22", "1e23", "8.5e22", "0.1e-6", "6.02214076e23",
+        "0.0",
+        "-0.0",
+        "0e999999999999",
+        "1e-999999999999999999999",
+        "1e99999999999999999999",
+        "4.9e-324",
+        "2.4703282292062327e-324",
+        "2.4703282292062328e-324",
+        "2.2250738585072011e-308",
+        "2.2250738585072014e-308",
+        "1.7976931348623157e308",
+        "1.7976931348623158e308",
+        "1.7976931348623159e308",
+        "179769313486231580793e289",
+        "9007199254740993.0",
+        "9007199254740992.5",
+        "123456789012345678901234567890e-20",
+        "1e22",
+        "1e23",
+        "8.5e22",
+        "0.1e-6",
+        "6.02214076e23",
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         assert_as_strtod(texts[i]);
@@ -138,9 +156,16 @@ static void test_integers_keep_all_their_bits(void)
         const char *text;
         int64_t value;
     } cases[] = {
-        {"0", 0},        {"-0", 0},         {"+7", 7},          {"1_000", 1000},
-        {"0xFf", 255},   {"0o17", 15},      {"0b1010_01", 41},  {"9223372036854775807", INT64_MAX},
-        {"-9223372036854775808", INT64_MIN}, {"0x7FFFFFFFFFFFFFFF", INT64_MAX},
+        {"0", 0},
+        {"-0", 0},
+        {"+7", 7},
+        {"1_000", 1000},
+        {"0xFf", 255},
+        {"0o17", 15},
+        {"0b1010_01", 41},
+        {"9223372036854775807", INT64_MAX},
+        {"-9223372036854775808", INT64_MIN},
+        {"0x7FFFFFFFFFFFFFFF", INT64_MAX},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         mct_number number;
@@ -170,10 +195,47 @@ static void test_infinity_and_nan_are_read_as_what_they_are(void)
 static void test_what_toml_forbids_is_refused_with_a_reason(void)
 {
     static const char *const texts[] = {
-        "",     "+",    "-",    "01",    "-00",  "00.5", "1.",    ".5",    "1.e5", "1e",    "1e+",   "1__0",
-        "_1",   "1_",   "1_.5", "1._5",  "1e_5", "1e5_", "+0x1",  "-0b1",  "0x",   "0x_1",  "0X1",   "0b2",
-        "0o8",  "1.5.2", "1e5.0", "Inf", "NaN",  "infinity", "1f", "0x1p3", "--1", "+-1", "1,0", "0x1.0",
-        "9223372036854775808", "-9223372036854775809", "0x8000000000000000", "nan0", "in",
+        "",
+        "+",
+        "-",
+        "01",
+        "-00",
+        "00.5",
+        "1.",
+        ".5",
+        "1.e5",
+        "1e",
+        "1e+",
+        "1__0",
+        "_1",
+        "1_",
+        "1_.5",
+        "1._5",
+        "1e_5",
+        "1e5_",
+        "+0x1",
+        "-0b1",
+        "0x",
+        "0x_1",
+        "0X1",
+        "0b2",
+        "0o8",
+        "1.5.2",
+        "1e5.0",
+        "Inf",
+        "NaN",
+        "infinity",
+        "1f",
+        "0x1p3",
+        "--1",
+        "+-1",
+        "1,0",
+        "0x1.0",
+        "9223372036854775808",
+        "-9223372036854775809",
+        "0x8000000000000000",
+        "nan0",
+        "in",
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         mct_number number;
@@ -192,7 +254,8 @@ static void test_numbers_are_written_as_nine_digits_of_printf(void)
         } else if (i % 4 == 2) {
             value = ldexp(i % 8 == 2 ? 1 : 0x1.fffffffffffffp0, i % 2098 - 1074); /* about powers of two */
         } else if (i % 4 == 3) {
-            value = (double)(random_bits() % 1000000) * pow(10, (double)(i % 30) - 20); /* about powers of ten */
+            value =
+                (double)(random_bits() % 1000000) * pow(10, (double)(i % 30) - 20); /* about powers of ten */
         }
         if (!isnan(value)) {
             snprintf(expected, sizeof expected, "%.9g", value);

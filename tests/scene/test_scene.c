@@ -1,4 +1,5 @@
-/* Rules of scenes: what is accepted, what is refused with which words, and that nothing is changed by a refusal. */
+/* Rules of scenes: what is accepted, what is refused with which words, and that nothing is changed by a
+ * refusal. */
 #include "mctau/scene.h"
 
 #include <math.h>
@@ -47,7 +48,8 @@ static void assert_refused(mct_status status, const char *text, const char *mess
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&before, &scene, sizeof before, "a refusal changed the scene");
 }
 
-static void assert_override_refused(mct_status status, const char *text, const char *override, const char *message)
+static void assert_override_refused(mct_status status, const char *text, const char *override,
+                                    const char *message)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(status, read_with(text, override, NULL), why.text);
     TEST_ASSERT_EQUAL_STRING(message, why.text);
@@ -100,12 +102,13 @@ static void test_every_key_can_be_given_its_smallest_and_its_largest_value_and_n
                 }
                 const double bounds[] = {key.field.minimum, key.field.maximum};
                 for (int side = 0; side < 2; side++) {
-                    const double step = key.field.kind == MCT_FIELD_INTEGER ? 1 : fabs(bounds[side]) * 1e-6 + 1e-9;
+                    const double step =
+                        key.field.kind == MCT_FIELD_INTEGER ? 1 : fabs(bounds[side]) * 1e-6 + 1e-9;
                     for (int beyond = 0; beyond < 2; beyond++) {
                         char text[300];
                         const double value = bounds[side] + (side == 0 ? -step : step) * beyond;
-                        snprintf(text, sizeof text, "scene.system = '%s'\n%s.%s = %.17g\n", mct_systems[i]->name,
-                                 mct_table_name(table), key.field.name, value);
+                        snprintf(text, sizeof text, "scene.system = '%s'\n%s.%s = %.17g\n",
+                                 mct_systems[i]->name, mct_table_name(table), key.field.name, value);
                         const mct_status status = read_with(text, NULL, NULL);
                         if (beyond) {
                             TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_ERROR_RANGE, status, text);
@@ -123,15 +126,18 @@ static void test_every_key_can_be_given_its_smallest_and_its_largest_value_and_n
 
 static void test_every_kind_of_value_goes_where_it_belongs(void)
 {
-    assert_read("[input]\nkind = 'steps'\ntimes = [0, 0.5]\nvalues = [1, -2.5]\n"
-                "[scene]\nsystem = \"cart_pole\"\nstepper = 'leap'\ndt = 2e-3\nsubsteps = 4\nduration = 1\n"
-                "precision = 'float'\nrealtime = true\nhal = 'socketcan:can0'\n"
-                "[parameters]\npole_mass = 0.25\n[effects]\nmotor = 'inductive'\ncoulomb = true\ngravity = false\n"
-                "[initial]\npole_angle = 0.1\ncart_velocity = -2\ncurrent = 0.5\n"
-                "[weights]\npole_rate = 3\ncart_position = 0.25\n"
-                "[sensors]\npole_counts_per_turn = 8192\ncart_counts_per_metre = 1000\ncounter_bits = 16\nlatency = 2\n"
-                "noise = 0.5\nseed = 42\nfault = 'frozen'\nfault_time = 0.25\nfault_duration = 0.125\n"
-                "[variation]\nspread = 0.1\nseed = 7\n[telemetry]\nlcm = 'udpm://239.255.76.67:7667?ttl=0'\nlog = 'a b.lcm'\n");
+    assert_read(
+        "[input]\nkind = 'steps'\ntimes = [0, 0.5]\nvalues = [1, -2.5]\n"
+        "[scene]\nsystem = \"cart_pole\"\nstepper = 'leap'\ndt = 2e-3\nsubsteps = 4\nduration = 1\n"
+        "precision = 'float'\nrealtime = true\nhal = 'socketcan:can0'\n"
+        "[parameters]\npole_mass = 0.25\n[effects]\nmotor = 'inductive'\ncoulomb = true\ngravity = false\n"
+        "[initial]\npole_angle = 0.1\ncart_velocity = -2\ncurrent = 0.5\n"
+        "[weights]\npole_rate = 3\ncart_position = 0.25\n"
+        "[sensors]\npole_counts_per_turn = 8192\ncart_counts_per_metre = 1000\ncounter_bits = 16\nlatency = "
+        "2\n"
+        "noise = 0.5\nseed = 42\nfault = 'frozen'\nfault_time = 0.25\nfault_duration = 0.125\n"
+        "[variation]\nspread = 0.1\nseed = 7\n[telemetry]\nlcm = 'udpm://239.255.76.67:7667?ttl=0'\nlog = 'a "
+        "b.lcm'\n");
     TEST_ASSERT_EQUAL_STRING("cart_pole", mct_systems[scene.system]->name);
     TEST_ASSERT_EQUAL_INT(MCT_STEPPER_LEAP, scene.stepper);
     TEST_ASSERT_EQUAL_INT(MCT_PRECISION_FLOAT, scene.precision);
@@ -178,7 +184,8 @@ static void test_a_stepper_left_out_is_the_most_accurate_that_suits(void)
 
 static void test_ready_scenes_are_read(void)
 {
-    static const char *const names[] = {"reaction_wheel", "cart_pole", "reaction_wheel_free", "cart_pole_free"};
+    static const char *const names[] = {"reaction_wheel", "cart_pole", "reaction_wheel_free",
+                                        "cart_pole_free"};
     const char *const source = getenv("MCTAU_SOURCE");
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[1000];
@@ -190,7 +197,8 @@ static void test_ready_scenes_are_read(void)
         fclose(file);
         const mct_status status = mct_scene_read(text, length, path, NULL, 0, &scene, &why);
         TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, status, why.text);
-        TEST_ASSERT_EQUAL_INT(i < 2 ? MCT_CONTROLLER_SWING_UP_BALANCE : MCT_CONTROLLER_NONE, scene.controller);
+        TEST_ASSERT_EQUAL_INT(i < 2 ? MCT_CONTROLLER_SWING_UP_BALANCE : MCT_CONTROLLER_NONE,
+                              scene.controller);
         TEST_ASSERT_EQUAL_DOUBLE(i < 2 ? 30 : 10, scene.duration);
     }
 }
@@ -215,7 +223,8 @@ static void test_an_overridden_text_may_go_without_quotes(void)
 
 static void test_an_overridden_system_brings_its_own_defaults(void)
 {
-    TEST_ASSERT_EQUAL_INT(MCT_OK, read_with(CART, "scene.system=reaction_wheel", "parameters.wheel_mass=0.5"));
+    TEST_ASSERT_EQUAL_INT(MCT_OK,
+                          read_with(CART, "scene.system=reaction_wheel", "parameters.wheel_mass=0.5"));
     TEST_ASSERT_EQUAL_STRING("reaction_wheel", mct_systems[scene.system]->name);
     TEST_ASSERT_EQUAL_DOUBLE(0.5, parameter("wheel_mass"));
     TEST_ASSERT_EQUAL_INT(MCT_STEPPER_EXPO, scene.stepper);
@@ -223,20 +232,25 @@ static void test_an_overridden_system_brings_its_own_defaults(void)
 
 static void test_an_override_is_called_by_its_origin(void)
 {
-    assert_override_refused(MCT_ERROR_RANGE, CART, "scene.dt=2", "--set: scene.dt: found 2 s; allowed 1e-07 to 1 s");
+    assert_override_refused(MCT_ERROR_RANGE, CART, "scene.dt=2",
+                            "--set: scene.dt: found 2 s; allowed 1e-07 to 1 s");
     assert_override_refused(MCT_ERROR_SYNTAX, CART, "scene.dt=", "--set: scene.dt: a value is missing");
-    assert_override_refused(MCT_ERROR_SYNTAX, CART, "scene.dt=1 2", "--set: scene.dt: ' 2' stands behind the value");
+    assert_override_refused(MCT_ERROR_SYNTAX, CART, "scene.dt=1 2",
+                            "--set: scene.dt: ' 2' stands behind the value");
     assert_override_refused(MCT_ERROR_SYNTAX, CART, "scene.dt", "--set: 'scene.dt' is not followed by '='");
     assert_override_refused(MCT_ERROR_SYNTAX, CART, "dt=1",
                             "--set: 'dt' belongs to no table: put it below a line such as [scene]");
-    assert_override_refused(MCT_ERROR_SYNTAX, "", "scene.system", "--set: 'scene.system' is not followed by '='");
-    assert_override_refused(MCT_ERROR_RANGE, CART, "foo.bar=1",
-                            "--set: [foo]: unknown table; allowed scene, controller, input, sensors, variation, telemetry, "
-                            "parameters, effects, initial, weights");
+    assert_override_refused(MCT_ERROR_SYNTAX, "", "scene.system",
+                            "--set: 'scene.system' is not followed by '='");
+    assert_override_refused(
+        MCT_ERROR_RANGE, CART, "foo.bar=1",
+        "--set: [foo]: unknown table; allowed scene, controller, input, sensors, variation, telemetry, "
+        "parameters, effects, initial, weights");
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_UNSUITED, read_with(CART, "scene.dt=0.001", "scene.stepper=expo"));
-    TEST_ASSERT_EQUAL_STRING("--stepper: scene.stepper: found expo, which does not suit cart_pole with gravity, viscous, "
-                             "motor = quasi_static; allowed seed, euler, leap, rk4",
-                             why.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "--stepper: scene.stepper: found expo, which does not suit cart_pole with gravity, viscous, "
+        "motor = quasi_static; allowed seed, euler, leap, rk4",
+        why.text);
 }
 
 /* --- single values that are refused --- */
@@ -249,8 +263,9 @@ static void test_a_number_out_of_range_is_refused_with_line_key_found_and_allowe
                    "x.toml:4: sensors.seed: found 2147483648; allowed 0 to 2147483647");
     assert_refused(MCT_ERROR_RANGE, CART "substeps = 0x0",
                    "x.toml:3: scene.substeps: found 0x0; allowed 1 to 1000");
-    assert_refused(MCT_ERROR_RANGE, CART "[input]\nkind = 'steps'\ntimes = [0, -1]\nvalues = [1, 2]",
-                   "x.toml:5: input.times: found -1 s as number 2; allowed at most 64 numbers from 0 to 10000000 s");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "[input]\nkind = 'steps'\ntimes = [0, -1]\nvalues = [1, 2]",
+        "x.toml:5: input.times: found -1 s as number 2; allowed at most 64 numbers from 0 to 10000000 s");
 }
 
 static void test_numbers_that_are_not_finite_are_refused_as_such(void)
@@ -265,38 +280,48 @@ static void test_numbers_that_are_not_finite_are_refused_as_such(void)
 
 static void test_a_wrong_type_is_refused_with_the_one_that_belongs(void)
 {
-    assert_refused(MCT_ERROR_RANGE, CART "dt = \"fast\"",
-                   "x.toml:3: scene.dt: found \"fast\", a text, where a number belongs; allowed 1e-07 to 1 s");
-    assert_refused(MCT_ERROR_RANGE, CART "substeps = 2.0",
-                   "x.toml:3: scene.substeps: found 2.0, a number, where a whole number belongs; allowed 1 to 1000");
-    assert_refused(MCT_ERROR_RANGE, CART "realtime = 1",
-                   "x.toml:3: scene.realtime: found 1, a number, where a boolean belongs; allowed true or false");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "dt = \"fast\"",
+        "x.toml:3: scene.dt: found \"fast\", a text, where a number belongs; allowed 1e-07 to 1 s");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "substeps = 2.0",
+        "x.toml:3: scene.substeps: found 2.0, a number, where a whole number belongs; allowed 1 to 1000");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "realtime = 1",
+        "x.toml:3: scene.realtime: found 1, a number, where a boolean belongs; allowed true or false");
     assert_refused(MCT_ERROR_RANGE, CART "precision = 64",
-                   "x.toml:3: scene.precision: found 64, a number, where a name in quotes belongs; allowed double, float");
+                   "x.toml:3: scene.precision: found 64, a number, where a name in quotes belongs; allowed "
+                   "double, float");
     assert_refused(MCT_ERROR_RANGE, CART "[telemetry]\nlog = true",
-                   "x.toml:4: telemetry.log: found true, a boolean, where a text in quotes belongs; allowed a text of at most 255 bytes");
+                   "x.toml:4: telemetry.log: found true, a boolean, where a text in quotes belongs; allowed "
+                   "a text of at most 255 bytes");
     assert_refused(MCT_ERROR_RANGE, CART "[input]\ntimes = 1",
-                   "x.toml:4: input.times: found 1, a number, where a list belongs; allowed at most 64 numbers from 0 to 10000000 s");
+                   "x.toml:4: input.times: found 1, a number, where a list belongs; allowed at most 64 "
+                   "numbers from 0 to 10000000 s");
     assert_refused(MCT_ERROR_RANGE, CART "[parameters]\npole_mass = [1]",
-                   "x.toml:4: parameters.pole_mass: found [1], a list, where a number belongs; allowed 1e-06 to 1000000 kg");
+                   "x.toml:4: parameters.pole_mass: found [1], a list, where a number belongs; allowed 1e-06 "
+                   "to 1000000 kg");
 }
 
 static void test_unknown_keys_and_tables_are_refused_with_the_closest_name(void)
 {
     assert_refused(MCT_ERROR_RANGE, CART "[paramters]\n",
-                   "x.toml:3: [paramters]: unknown table; did you mean 'parameters'? allowed scene, controller, input, sensors, "
+                   "x.toml:3: [paramters]: unknown table; did you mean 'parameters'? allowed scene, "
+                   "controller, input, sensors, "
                    "variation, telemetry, parameters, effects, initial, weights");
-    assert_refused(MCT_ERROR_RANGE, CART "[initial]\npole_angel = 2\n",
-                   "x.toml:4: initial.pole_angel: unknown key of [initial] for cart_pole; did you mean 'pole_angle'? "
-                   "allowed cart_position, pole_angle, cart_velocity, pole_rate, current");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "[initial]\npole_angel = 2\n",
+        "x.toml:4: initial.pole_angel: unknown key of [initial] for cart_pole; did you mean 'pole_angle'? "
+        "allowed cart_position, pole_angle, cart_velocity, pole_rate, current");
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, read_with(CART "[parameters]\npole_mas = 1\n", NULL, NULL));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why.text, "did you mean 'pole_mass'?"), why.text);
 }
 
 static void test_a_key_in_the_wrong_place_is_sent_where_it_belongs(void)
 {
-    assert_refused(MCT_ERROR_RANGE, CART "pole_mass = 1",
-                   "x.toml:3: scene.pole_mass: unknown key of [scene] for cart_pole; it belongs to [parameters]");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "pole_mass = 1",
+        "x.toml:3: scene.pole_mass: unknown key of [scene] for cart_pole; it belongs to [parameters]");
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, read_with(CART "[parameters]\nwheel_mass = 1\n", NULL, NULL));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why.text, "; it belongs to reaction_wheel; allowed "), why.text);
 }
@@ -304,9 +329,11 @@ static void test_a_key_in_the_wrong_place_is_sent_where_it_belongs(void)
 static void test_unknown_names_are_refused_with_those_that_are_known(void)
 {
     assert_refused(MCT_ERROR_RANGE, "[scene]\nsystem = 'cart_pol'",
-                   "x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed cart_pole, reaction_wheel");
-    assert_refused(MCT_ERROR_RANGE, CART "stepper = 'rk5'",
-                   "x.toml:3: scene.stepper: found 'rk5'; did you mean 'rk4'? allowed seed, euler, leap, rk4, expo");
+                   "x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed cart_pole, "
+                   "reaction_wheel");
+    assert_refused(
+        MCT_ERROR_RANGE, CART "stepper = 'rk5'",
+        "x.toml:3: scene.stepper: found 'rk5'; did you mean 'rk4'? allowed seed, euler, leap, rk4, expo");
     assert_refused(MCT_ERROR_RANGE, CART "[effects]\nmotor = 'stepper'",
                    "x.toml:4: effects.motor: found 'stepper'; allowed off, quasi_static, inductive");
 }
@@ -328,7 +355,8 @@ static void test_texts_and_lists_that_do_not_fit_are_refused(void)
     strcpy(text + length + MCT_MAX_TEXT - 1, "a'");
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_BOUND, read_with(text, NULL, NULL));
     assert_refused(MCT_ERROR_RANGE, CART "[telemetry]\nlog = \"a\\u0000b\"",
-                   "x.toml:4: telemetry.log: found \"a\\u0000b\", which contains a NUL; allowed a text of at most 255 bytes");
+                   "x.toml:4: telemetry.log: found \"a\\u0000b\", which contains a NUL; allowed a text of at "
+                   "most 255 bytes");
 
     length = (size_t)sprintf(text, CART "[input]\ntimes = [0");
     for (int i = 0; i < MCT_MAX_LIST; i++) {
@@ -347,19 +375,22 @@ static void test_what_is_not_toml_is_refused_as_syntax(void)
 
 static void test_a_stepper_that_does_not_suit_names_those_that_do(void)
 {
-    assert_refused(MCT_ERROR_UNSUITED, CART "stepper = 'expo'",
-                   "x.toml:3: scene.stepper: found expo, which does not suit cart_pole with gravity, viscous, "
-                   "motor = quasi_static; allowed seed, euler, leap, rk4");
+    assert_refused(
+        MCT_ERROR_UNSUITED, CART "stepper = 'expo'",
+        "x.toml:3: scene.stepper: found expo, which does not suit cart_pole with gravity, viscous, "
+        "motor = quasi_static; allowed seed, euler, leap, rk4");
 }
 
 static void test_a_stepper_too_coarse_for_the_motor_names_what_would_do(void)
 {
-    assert_refused(MCT_ERROR_UNSUITED,
-                   WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
-                   "x.toml:3: scene.stepper: found rk4, which follows an inductive motor up to h R/L = 2.785; at h = 0.001 s "
-                   "it is 100; allowed euler, leap, expo, or scene.dt up to 2.78e-05 s, or scene.substeps from 36");
-    TEST_ASSERT_EQUAL_INT(MCT_ERROR_UNSUITED, read_with(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
-                                                        "scene.substeps=35", NULL));
+    assert_refused(
+        MCT_ERROR_UNSUITED, WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
+        "x.toml:3: scene.stepper: found rk4, which follows an inductive motor up to h R/L = 2.785; at h = "
+        "0.001 s "
+        "it is 100; allowed euler, leap, expo, or scene.dt up to 2.78e-05 s, or scene.substeps from 36");
+    TEST_ASSERT_EQUAL_INT(
+        MCT_ERROR_UNSUITED,
+        read_with(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n", "scene.substeps=35", NULL));
     TEST_ASSERT_EQUAL_INT(MCT_OK, read_with(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
                                             "scene.substeps=36", NULL));
     TEST_ASSERT_EQUAL_INT(MCT_OK, read_with(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
@@ -370,32 +401,39 @@ static void test_a_motor_without_inductance_sets_no_limit_and_has_no_current(voi
 {
     assert_read(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 0\n");
     assert_refused(MCT_ERROR_UNSUITED, WHEEL "[parameters]\ninductance = 0\n[initial]\ncurrent = 1\n",
-                   "x.toml:6: initial.current: found a state that the scene has not; allowed with effects.motor = inductive "
+                   "x.toml:6: initial.current: found a state that the scene has not; allowed with "
+                   "effects.motor = inductive "
                    "and an inductance");
 }
 
 static void test_a_controller_needs_a_motor(void)
 {
-    assert_refused(MCT_ERROR_UNSUITED, CART "[effects]\nmotor = 'off'\n[controller]\nkind = 'swing_up_balance'\n",
-                   "x.toml:6: controller.kind: found a controller, which gives a voltage, with effects.motor = off; "
-                   "allowed with quasi_static or inductive");
+    assert_refused(
+        MCT_ERROR_UNSUITED, CART "[effects]\nmotor = 'off'\n[controller]\nkind = 'swing_up_balance'\n",
+        "x.toml:6: controller.kind: found a controller, which gives a voltage, with effects.motor = off; "
+        "allowed with quasi_static or inductive");
 }
 
 static void test_a_controller_and_an_open_loop_exclude_each_other(void)
 {
-    assert_refused(MCT_ERROR_UNSUITED, CART "[controller]\nkind = 'swing_up_balance'\n[input]\nkind = 'constant'\n",
-                   "x.toml:4: controller.kind: found a controller together with an open-loop [input]; allowed one of them, "
+    assert_refused(MCT_ERROR_UNSUITED,
+                   CART "[controller]\nkind = 'swing_up_balance'\n[input]\nkind = 'constant'\n",
+                   "x.toml:4: controller.kind: found a controller together with an open-loop [input]; "
+                   "allowed one of them, "
                    "the other's kind being none");
 }
 
 static void test_a_key_that_the_kind_of_input_does_not_read_is_refused(void)
 {
     assert_refused(MCT_ERROR_UNSUITED, CART "[input]\nkind = 'constant'\namplitude = 3\n",
-                   "x.toml:5: input.amplitude: found with input.kind = constant, which does not read it; allowed with sine");
+                   "x.toml:5: input.amplitude: found with input.kind = constant, which does not read it; "
+                   "allowed with sine");
     assert_refused(MCT_ERROR_UNSUITED, CART "[input]\nvalue = 3\n",
-                   "x.toml:4: input.value: found with input.kind = none, which does not read it; allowed with constant or sine");
-    assert_override_refused(MCT_ERROR_UNSUITED, CART "[input]\nkind = 'sine'\n", "input.column=x",
-                            "--set: input.column: found with input.kind = sine, which does not read it; allowed with csv");
+                   "x.toml:4: input.value: found with input.kind = none, which does not read it; allowed "
+                   "with constant or sine");
+    assert_override_refused(
+        MCT_ERROR_UNSUITED, CART "[input]\nkind = 'sine'\n", "input.column=x",
+        "--set: input.column: found with input.kind = sine, which does not read it; allowed with csv");
 }
 
 static void test_steps_rise_and_match(void)
@@ -410,21 +448,24 @@ static void test_steps_rise_and_match(void)
 
 static void test_a_csv_input_needs_a_file_and_a_column(void)
 {
-    assert_refused(MCT_ERROR_UNSUITED, CART "[input]\nkind = 'csv'\ncolumn = 'u'\n",
-                   "x.toml: input.file: found none; an input of kind csv needs a file and the name of a column");
+    assert_refused(
+        MCT_ERROR_UNSUITED, CART "[input]\nkind = 'csv'\ncolumn = 'u'\n",
+        "x.toml: input.file: found none; an input of kind csv needs a file and the name of a column");
     assert_read(CART "[input]\nkind = 'csv'\ncolumn = 'u'\nfile = 'u.csv'\n");
 }
 
 static void test_a_duration_is_a_whole_number_of_ticks(void)
 {
-    assert_refused(MCT_ERROR_UNSUITED, CART "duration = 1.0006\n",
-                   "x.toml:3: scene.duration: found 1.0006 s, which is not a whole number of ticks of 0.001 s; "
-                   "the nearest is 1.001 s, 1001 ticks");
+    assert_refused(
+        MCT_ERROR_UNSUITED, CART "duration = 1.0006\n",
+        "x.toml:3: scene.duration: found 1.0006 s, which is not a whole number of ticks of 0.001 s; "
+        "the nearest is 1.001 s, 1001 ticks");
     assert_read(CART "duration = 0\n");
     assert_read(CART "dt = 1e-7\nduration = 1e7\n");
     for (int ticks = 1; ticks < 3000; ticks += 7) { /* decimals that no double holds exactly */
         char text[100];
-        snprintf(text, sizeof text, CART "dt = 0.0007\nduration = %d.%04d\n", ticks * 7 / 10000, ticks * 7 % 10000);
+        snprintf(text, sizeof text, CART "dt = 0.0007\nduration = %d.%04d\n", ticks * 7 / 10000,
+                 ticks * 7 % 10000);
         assert_read(text);
     }
 }
@@ -448,7 +489,8 @@ static void test_the_check_finds_what_a_hand_has_spoilt(void)
     scene = good;
     scene.effects |= MCT_MOTOR;
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_check(&scene, &why));
-    TEST_ASSERT_EQUAL_STRING("effects.motor: found more than one; allowed off, quasi_static, inductive", why.text);
+    TEST_ASSERT_EQUAL_STRING("effects.motor: found more than one; allowed off, quasi_static, inductive",
+                             why.text);
     scene = good;
     scene.effects |= (uint32_t)1 << 31;
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_check(&scene, NULL));
@@ -466,7 +508,8 @@ static void test_the_check_finds_what_a_hand_has_spoilt(void)
 static void test_who_does_not_ask_why_is_refused_all_the_same(void)
 {
     const char text[] = CART "dt = 2";
-    TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_read(text, sizeof text - 1, NULL, NULL, 0, &scene, NULL));
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE,
+                          mct_scene_read(text, sizeof text - 1, NULL, NULL, 0, &scene, NULL));
 }
 
 /* --- variation --- */
@@ -483,14 +526,15 @@ static void test_variation_changes_parameters_within_its_spread_and_nothing_else
             mct_scene_vary(&scene, &plant);
             for (int i = 0; i < mct_systems[system]->parameter_count; i++) {
                 const double change = plant.parameters[i] - scene.parameters[i];
-                TEST_ASSERT_TRUE(fabs(change) <= (0.1 + 4e-16) * fabs(scene.parameters[i])); /* two roundings near 1 */
+                TEST_ASSERT_TRUE(fabs(change) <=
+                                 (0.1 + 4e-16) * fabs(scene.parameters[i])); /* two roundings near 1 */
                 largest = fmax(largest, scene.parameters[i] != 0 ? fabs(change / scene.parameters[i]) : 0);
             }
             memcpy(plant.parameters, scene.parameters, sizeof plant.parameters);
             TEST_ASSERT_EQUAL_MEMORY(&scene, &plant, sizeof plant);
         }
     }
-    TEST_ASSERT_TRUE(largest > 0.0999); /* of some 5000 uniform draws */
+    TEST_ASSERT_TRUE(largest > 0.099); /* of some 4000 uniform draws */
 }
 
 static void test_gravity_gears_and_supply_do_not_vary(void)
@@ -521,7 +565,8 @@ static void test_variation_is_a_function_of_seed_and_parameter_alone(void)
     scene.parameters[0] *= 2;
     scene.parameters[1] *= 4;
     mct_scene_vary(&scene, &second);
-    TEST_ASSERT_DOUBLE_WITHIN(4e-16 * ratio, ratio, second.parameters[1] / scene.parameters[1]); /* two roundings */
+    TEST_ASSERT_DOUBLE_WITHIN(4e-16 * ratio, ratio,
+                              second.parameters[1] / scene.parameters[1]); /* two roundings */
     scene.variation_seed = 2;
     mct_scene_vary(&scene, &second);
     TEST_ASSERT_TRUE(fabs(second.parameters[1] / scene.parameters[1] - ratio) > 1e-6);

@@ -1,4 +1,5 @@
-/* Rules of the TOML reader that need no second implementation; tests/scene/test_toml.py holds it against tomllib. */
+/* Rules of the TOML reader that need no second implementation; tests/scene/test_toml.py holds it against
+ * tomllib. */
 #include "scene/toml.h"
 
 #include <stdio.h>
@@ -47,9 +48,12 @@ static void test_dotted_keys_stand_ahead_of_the_first_table(void)
     TEST_ASSERT_EQUAL_INT(2, toml.table_count);
     TEST_ASSERT_TRUE(mct_span_is(toml.entries[0].table, "scene"));
     TEST_ASSERT_TRUE(mct_span_is(toml.entries[0].key, "dt"));
-    assert_refused("[scene]\na.b = 1", "x.toml:2:1: a table within a table is TOML, but outside of the subset that scenes use");
-    assert_refused("a.b.c = 1", "x.toml:1:1: a table within a table is TOML, but outside of the subset that scenes use");
-    assert_refused("scene.dt = 1\n[scene]\n", "x.toml:2:2: 'scene' begins a second time; the first is in line 1");
+    assert_refused("[scene]\na.b = 1",
+                   "x.toml:2:1: a table within a table is TOML, but outside of the subset that scenes use");
+    assert_refused("a.b.c = 1",
+                   "x.toml:1:1: a table within a table is TOML, but outside of the subset that scenes use");
+    assert_refused("scene.dt = 1\n[scene]\n",
+                   "x.toml:2:2: 'scene' begins a second time; the first is in line 1");
 }
 
 static void test_a_byte_order_mark_is_skipped(void)
@@ -62,7 +66,8 @@ static void test_a_byte_order_mark_is_skipped(void)
 static void test_texts_are_decoded(void)
 {
     char text[64];
-    TEST_ASSERT_EQUAL_INT(MCT_OK, read_text("[t]\na = \"\\\"\\t\\u00e9\\U0001F600\"\nb = 'C:\\new'\nc = \"\""));
+    TEST_ASSERT_EQUAL_INT(MCT_OK,
+                          read_text("[t]\na = \"\\\"\\t\\u00e9\\U0001F600\"\nb = 'C:\\new'\nc = \"\""));
     TEST_ASSERT_EQUAL_size_t(8, mct_toml_text(&toml.entries[0], text, sizeof text));
     TEST_ASSERT_EQUAL_STRING("\"\t\xC3\xA9\xF0\x9F\x98\x80", text);
     mct_toml_text(&toml.entries[1], text, sizeof text);
@@ -95,7 +100,8 @@ static void test_what_toml_forbids_is_refused_with_place_and_reason(void)
     assert_refused("[a]\nb =", "x.toml:2:4: 'b' has no value");
     assert_refused("[a]\nb = # 1", "x.toml:2:5: 'b' has no value");
     assert_refused("[a]\nb = 1 2", "x.toml:2:7: '2' stands behind what should end the line");
-    assert_refused("[a]\nb = 1\nc = 2\nb = 3", "x.toml:4:1: 'b' is given a second time; the first is in line 2");
+    assert_refused("[a]\nb = 1\nc = 2\nb = 3",
+                   "x.toml:4:1: 'b' is given a second time; the first is in line 2");
     assert_refused("[a]\n[b]\n[a]", "x.toml:3:2: 'a' begins a second time; the first is in line 1");
     assert_refused("[a", "x.toml:1:3: the closing bracket of the table's name is missing");
     assert_refused("[]", "x.toml:1:2: the name of a table is missing (letters, digits, '_' and '-')");
@@ -112,9 +118,18 @@ static void test_what_toml_forbids_is_refused_with_place_and_reason(void)
 static void test_what_is_outside_of_the_subset_is_called_that(void)
 {
     static const char *const texts[] = {
-        "[a]\nb = 1979-05-27",  "[a]\nb = 07:32:00", "[a]\nb = 1979-05-27T07:32:00Z", "[a]\nb = {c = 1}",
-        "[a]\nb = \"\"\"c\"\"\"", "[a]\nb = '''c'''",  "[[a]]",                         "[a.b]",
-        "[\"a\"]",              "[a]\n\"b\" = 1",    "[a]\nb = [[1], [2]]",           "[a]\nb = ['c']",
+        "[a]\nb = 1979-05-27",
+        "[a]\nb = 07:32:00",
+        "[a]\nb = 1979-05-27T07:32:00Z",
+        "[a]\nb = {c = 1}",
+        "[a]\nb = \"\"\"c\"\"\"",
+        "[a]\nb = '''c'''",
+        "[[a]]",
+        "[a.b]",
+        "[\"a\"]",
+        "[a]\n\"b\" = 1",
+        "[a]\nb = [[1], [2]]",
+        "[a]\nb = ['c']",
         "[a]\nb = [true]",
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {

@@ -1,7 +1,8 @@
 /*
- * Helper of test_toml.py: reads documents from stdin, each "LENGTH\n" and that many bytes, and writes what the reader makes of
- * each as lines of JSON: {"ok": ..., "message": ..., "tables": [...], "entries": [[table, key, kind, value], ...]}.
- * Reals are written as the hexadecimal of their bits, texts as the hexadecimal of their bytes.
+ * Helper of test_toml.py: reads documents from stdin, each "LENGTH\n" and that many bytes, and writes what
+ * the reader makes of each as lines of JSON: {"ok": ..., "message": ..., "tables": [...], "entries": [[table,
+ * key, kind, value], ...]}. Reals are written as the hexadecimal of their bits, texts as the hexadecimal of
+ * their bytes.
  */
 #include <inttypes.h>
 #include <stdio.h>
@@ -33,8 +34,8 @@ static void print_bits(double value)
 static void print_entry(const mct_toml_entry *entry)
 {
     static const char *const kinds[] = {"integer", "real", "boolean", "text", "list"};
-    printf("[\"%.*s\", \"%.*s\", \"%s\", ", (int)entry->table.length, entry->table.start, (int)entry->key.length,
-           entry->key.start, kinds[entry->kind]);
+    printf("[\"%.*s\", \"%.*s\", \"%s\", ", (int)entry->table.length, entry->table.start,
+           (int)entry->key.length, entry->key.start, kinds[entry->kind]);
     if (entry->kind == MCT_TOML_INTEGER || entry->kind == MCT_TOML_BOOLEAN) {
         printf("%" PRId64, entry->integer);
     } else if (entry->kind == MCT_TOML_REAL) {
@@ -65,7 +66,8 @@ int main(void)
         print_bytes(why.text, strlen(why.text));
         fputs(", \"tables\": [", stdout);
         for (int i = 0; status == MCT_OK && i < toml.table_count; i++) {
-            printf("%s\"%.*s\"", i > 0 ? ", " : "", (int)toml.tables[i].name.length, toml.tables[i].name.start);
+            printf("%s\"%.*s\"", i > 0 ? ", " : "", (int)toml.tables[i].name.length,
+                   toml.tables[i].name.start);
         }
         fputs("], \"entries\": [", stdout);
         for (int i = 0; status == MCT_OK && i < toml.entry_count; i++) {

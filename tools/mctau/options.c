@@ -63,14 +63,14 @@ static void print_option(const option *self, FILE *file)
     fprintf(file, "\n  %-24s = --set %s=%s\n", "", self->key, self->argument != NULL ? self->argument : "true");
 }
 
-void print_help(const verb *verb, FILE *file)
+void print_help(const verb *self, FILE *file)
 {
-    fprintf(file, "usage: mctau %s%s%s [options]\n\n%s\n\nOptions\n", verb->name, verb->operand != NULL ? " " : "",
-            verb->operand != NULL ? verb->operand : "", verb->text);
-    for (const option *row = verb->options; row->name != NULL; row++) {
+    fprintf(file, "usage: mctau %s%s%s [options]\n\n%s\n\nOptions\n", self->name, self->operand != NULL ? " " : "",
+            self->operand != NULL ? self->operand : "", self->text);
+    for (const option *row = self->options; row->name != NULL; row++) {
         print_option(row, file);
     }
-    fprintf(file, "  %-24s this text\n\nExamples\n%s\nExit codes\n%s", "--help", verb->examples, verb->exit_codes);
+    fprintf(file, "  %-24s this text\n\nExamples\n%s\nExit codes\n%s", "--help", self->examples, self->exit_codes);
 }
 
 /* --- parser --- */
@@ -119,46 +119,46 @@ void arguments_free(arguments *self)
     free(self->overrides);
 }
 
-static int complain(const verb *verb, char **argv, int wrong)
+static int complain(const char *name, char **argv, int wrong)
 {
     const char *what = argv[optind - 1];
     if (wrong == ':') {
-        return say(EXIT_USAGE, "%s: %s needs an argument; mctau %s --help shows which", verb->name, what, verb->name);
+        return say(EXIT_USAGE, "%s: %s needs an argument; mctau %s --help shows which", name, what, name);
     }
     if (optopt >= FIRST_OPTION || optopt == HELP) {
-        return say(EXIT_USAGE, "%s: %s takes no argument", verb->name, what);
+        return say(EXIT_USAGE, "%s: %s takes no argument", name, what);
     }
-    return say(EXIT_USAGE, "%s: unknown or ambiguous option %s; mctau %s --help lists all", verb->name, what, verb->name);
+    return say(EXIT_USAGE, "%s: unknown or ambiguous option %s; mctau %s --help lists all", name, what, name);
 }
 
 static bool take_operand(arguments *self, int argc, char **argv, int *exit_code)
 {
-    const verb *verb = self->verb;
-    const int allowed = verb->operand != NULL ? 1 : 0;
+    const verb *asked = self->verb;
+    const int allowed = asked->operand != NULL ? 1 : 0;
     if (argc - optind > allowed) {
-        *exit_code = say(EXIT_USAGE, "%s: found one argument too many: %s; usage: mctau %s %s [options]", verb->name,
-                         argv[optind + allowed], verb->name, verb->operand != NULL ? verb->operand : "");
+        *exit_code = say(EXIT_USAGE, "%s: found one argument too many: %s; usage: mctau %s %s [options]", asked->name,
+                         argv[optind + allowed], asked->name, asked->operand != NULL ? asked->operand : "");
         return false;
     }
     if (argc > optind) {
         self->operand = argv[optind];
-    } else if (allowed == 1 && verb->operand[0] != '[') {
-        *exit_code = say(EXIT_USAGE, "%s: no %s given\nusage: mctau %s %s [options]\n%smctau %s --help tells more", verb->name,
-                         verb->operand, verb->name, verb->operand, verb->examples, verb->name);
+    } else if (allowed == 1 && asked->operand[0] != '[') {
+        *exit_code = say(EXIT_USAGE, "%s: no %s given\nusage: mctau %s %s [options]\n%smctau %s --help tells more", asked->name,
+                         asked->operand, asked->name, asked->operand, asked->examples, asked->name);
         return false;
     }
     return true;
 }
 
-bool arguments_read(arguments *self, const verb *verb, int argc, char **argv, int *exit_code)
+bool arguments_read(arguments *self, const verb *asked, int argc, char **argv, int *exit_code)
 {
     struct option table[MAX_OPTIONS + 2];
     int count = 0;
     memset(self, 0, sizeof *self);
-    self->verb = verb;
-    for (; verb->options[count].name != NULL; count++) {
-        const int has_argument = verb->options[count].argument != NULL ? required_argument : no_argument;
-        table[count] = (struct option){verb->options[count].name, has_argument, NULL, FIRST_OPTION + count};
+    self->verb = asked;
+    for (; asked->options[count].name != NULL; count++) {
+        const int has_argument = asked->options[count].argument != NULL ? required_argument : no_argument;
+        table[count] = (struct option){asked->options[count].name, has_argument, NULL, FIRST_OPTION + count};
     }
     table[count] = (struct option){"help", no_argument, NULL, HELP};
     table[count + 1] = (struct option){NULL, 0, NULL, 0};
@@ -169,15 +169,15 @@ bool arguments_read(arguments *self, const verb *verb, int argc, char **argv, in
             return take_operand(self, argc, argv, exit_code);
         }
         if (found == HELP || found == 'h') {
-            print_help(verb, stdout);
+            print_help(asked, stdout);
             *exit_code = EXIT_WELL;
             return false;
         }
         if (found < FIRST_OPTION) {
-            *exit_code = complain(verb, argv, found);
+            *exit_code = complain(asked->name, argv, found);
             return false;
         }
-        const option *row = &verb->options[found - FIRST_OPTION];
+        const option *row = &asked->options[found - FIRST_OPTION];
         const char *value = optarg != NULL ? optarg : "";
         self->values[found - FIRST_OPTION] = value;
         const char *meaning = row->argument != NULL ? value : "true";

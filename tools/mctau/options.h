@@ -53,11 +53,11 @@ const char *arguments_value(const arguments *self, const char *name);
  * Reads a command line; argv[0] is the verb's name.
  * Returns true when the verb shall run. Otherwise *exit_code says how to end: help was printed, or a complaint.
  */
-bool arguments_read(arguments *self, const verb *verb, int argc, char **argv, int *exit_code);
+bool arguments_read(arguments *self, const verb *asked, int argc, char **argv, int *exit_code);
 
 void arguments_free(arguments *self);
 
 /* Writes what a verb does, its options, examples and exit codes. */
-void print_help(const verb *verb, FILE *file);
+void print_help(const verb *self, FILE *file);
 
 #endif

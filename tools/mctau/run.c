@@ -13,7 +13,7 @@
 #include "verbs.h"
 
 static const option options[] = {
-    {"duration", "S", "scene.duration", "how long [s], a whole number of ticks"},
+    {"duration", "S", "scene.duration", "how long, a whole number of ticks"},
     {"dt", "S", "scene.dt", NULL},
     {"stepper", "NAME", "scene.stepper", "how the plant is simulated"},
     {"precision", "NAME", "scene.precision", NULL},
@@ -103,10 +103,10 @@ static int check_outputs(const scene_file *file, const run_options *run)
 
 /* --- verdict --- */
 
-const char *verdict_name(verdict verdict)
+const char *verdict_name(verdict self)
 {
     static const char *const names[] = {"balanced", "not_balanced", "faulted", "diverged", "stopped", "finished"};
-    return names[verdict];
+    return names[self];
 }
 
 static verdict judge(const run_result *result, double dt)

@@ -16,7 +16,7 @@ typedef struct {
     verdict verdict;
 } run_report;
 
-const char *verdict_name(verdict verdict);
+const char *verdict_name(verdict self);
 
 void print_run_json(const run_report *report, FILE *file);
 void print_run(const run_report *report, FILE *file);

@@ -118,6 +118,7 @@ void print_run_json(const run_report *report, FILE *file)
     json_number(&out, "deviation", result->deviation);
     json_text(&out, "mode", result->mode);
     json_object(&out, "counters");
+    json_count(&out, "saturated_ticks", result->saturated_ticks);
     json_count(&out, "limited_ticks", result->limited_ticks);
     json_count(&out, "derated_ticks", result->derated_ticks);
     json_count(&out, "rejected_inputs", result->rejected_inputs);
@@ -177,10 +178,10 @@ static void print_state(const run_report *report, FILE *file)
         const double value = result->state[i];
         const bool is_angle = strcmp(result->units[i], "rad") == 0;
         fprintf(file, "  %-16s %14.6g %-6s", result->names[i], value, result->units[i]);
-        if (is_angle && fabs(value) < 20) {
-            fprintf(file, " %10.3f deg", value * DEGREES);
-        } else if (is_angle) {
-            fprintf(file, " %10.3f turns", value * DEGREES / 360);
+        if (is_angle) {
+            const double turns = nearbyint(value * DEGREES / 360);
+            fprintf(file, " %9.3f deg", value * DEGREES - 360 * turns);
+            fprintf(file, turns != 0 ? " and %.0f turns" : "", turns);
         }
         fputc('\n', file);
     }
@@ -221,8 +222,8 @@ static void print_faults(const run_report *report, FILE *file)
         fputs("\nFaults: none\n", file);
     }
     char limited[64];
-    snprintf(limited, sizeof limited, "the input was cut at its limit of %g V", result->limit);
-    print_share(file, limited, result->limited_ticks, result->ticks);
+    snprintf(limited, sizeof limited, "the voltage was at its limit of %g V", result->limit);
+    print_share(file, limited, result->saturated_ticks, result->ticks);
     print_share(file, "the voltage was reduced because feedback was late", result->derated_ticks, result->ticks);
     print_share(file, "the plant refused an input that was not finite", result->rejected_inputs, result->ticks);
 }

@@ -47,6 +47,7 @@ typedef struct {
     uint64_t faults[RUNNER_MAX_FAULTS]; /* ticks on which each fault was seen, by mct_fault */
     uint32_t latched;
     double fault_at;             /* [s] first tick on which one was latched; negative when none was */
+    uint64_t saturated_ticks;    /* input at its limit, whether the controller or the supervisor put it there */
     uint64_t limited_ticks, derated_ticks, rejected_inputs, diverged_ticks;
     double limit;                /* largest input let through [V]; infinite when nothing bounds it */
     bool controlled;

@@ -42,6 +42,8 @@ typedef struct {
     int upright;            /* index of the angle that is 0 upright */
     mct_real deviation, least_deviation, worst_deviation;
     uint64_t last_outside;  /* tick at whose end the angle was beyond UPRIGHT, `never` for none */
+    mct_real limit;         /* of the input */
+    uint64_t saturated_ticks;
     uint64_t first_fault;   /* tick on which a fault was latched, `never` for none */
     /* time */
     int64_t started_ns, loop_ns, waiting_ns;
@@ -221,7 +223,11 @@ static mct_status start_telemetry(run *self, run_result *result, mct_message *wh
     }
 #if MCTAU_HAVE_LCM
     const mct_telemetry_targets targets = {
-        .url = self->options->lcm, .log = self->options->log, .scene_text = self->options->scene_text};
+        .url = self->options->lcm,
+        .log = self->options->log,
+        .scene_text = self->options->scene_text,
+        .timing = self->loop.hal.ops->timing(self->loop.hal.context),
+    };
     const mct_status status = mct_telemetry_start(&self->telemetry, &self->ring, self->scene, &targets, why);
     self->has_telemetry = status == MCT_OK;
     if (status == MCT_OK) {
@@ -320,6 +326,7 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
     status = mct_loop_init(&self->loop, scene, hal, wants_telemetry(self) ? &self->ring : NULL,
                            (mct_samples){options->samples, options->sample_count}, why);
     self->plant = hal.ops->plant(hal.context);
+    self->limit = self->loop.supervisor.limit;
     status = status != MCT_OK ? status : open_csv(self, why);
     status = status != MCT_OK ? status : start_telemetry(self, result, why);
     if (status != MCT_OK) {
@@ -343,6 +350,8 @@ static void tick(run *self)
     }
     mct_loop_tick(loop);
     track_deviation(self, loop->tick);
+    const mct_real applied = loop->record.applied;
+    self->saturated_ticks += applied >= self->limit || applied <= -self->limit;
     if (loop->record.faults != 0 && self->first_fault == never) {
         self->first_fault = loop->record.tick;
     }
@@ -416,6 +425,7 @@ static void fill_result(run *self, run_result *result)
         result->faults[i] = supervisor->counts[i];
     }
     result->fault_at = self->first_fault == never ? -1 : (double)self->first_fault * dt;
+    result->saturated_ticks = self->saturated_ticks;
     result->limited_ticks = supervisor->limited_ticks;
     result->derated_ticks = supervisor->derated_ticks;
     result->rejected_inputs = self->sim.plant.rejected_inputs;

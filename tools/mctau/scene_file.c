@@ -142,7 +142,7 @@ static int choose_runner(scene_file *self)
 int scene_file_read(scene_file *self, const arguments *given)
 {
     char *text;
-    size_t length;
+    size_t length = 0;
     mct_message why;
     memset(self, 0, sizeof *self);
     self->path = given->operand;

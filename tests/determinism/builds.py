@@ -1,0 +1,101 @@
+"""Builds tests/determinism/bits.c with core and sim HAL in many ways, and runs it.
+
+Ninja does the work, so that a second run compiles only what has changed.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+
+PRECISIONS = {"double": "0", "float": "1"}
+# What every user of the library needs; no option beside may be needed for the same bits.
+ALWAYS = "-std=c99 -ffp-contract=off -D_POSIX_C_SOURCE=200809L"
+CONFIGURATIONS = [(compiler, options) for compiler in ("gcc", "clang")
+                  for options in ("-O0", "-O2", "-O3 -march=native")]
+REFERENCE = ("gcc", "-O2")
+GOLDEN = pathlib.Path(__file__).parent.parent / "golden" / "bits.txt"
+
+
+def name_of(configuration):
+    return "_".join(configuration).replace(" ", "").replace("-", "_").replace("=", "_")
+
+
+def missing(configuration):
+    """Why a configuration cannot be built here, or None."""
+    return None if shutil.which(configuration[0]) else f"{configuration[0]} is not installed; run tools/setup"
+
+
+class Builds:
+    """Builds of some configurations in one folder."""
+
+    def __init__(self, source, folder, configurations):
+        self.source = pathlib.Path(source)
+        self.folder = pathlib.Path(folder)
+        self.wanted = [each for each in configurations if missing(each) is None]
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._write_config()
+        self._write_if_changed(self.folder / "build.ninja", "\n".join(self._rules()) + "\n")
+
+    def build(self):
+        """Builds as much as can be built; gives the compiler's output, which matters where a program is missing."""
+        done = subprocess.run(["ninja", "-C", self.folder, "-k", "0", "-j", str(min(2, os.cpu_count() or 1))],
+                              capture_output=True, text=True)
+        return done.stdout + done.stderr
+
+    def objects(self, configuration, precision, room):
+        """Object files of a room, src or hal."""
+        folder = self.folder / name_of(configuration) / precision / room
+        return sorted(str(file) for file in folder.rglob("*.o"))
+
+    def lines(self, configuration):
+        """What the programs of both precisions print."""
+        scenes = [str(self.source / "scenes" / f"{name}.toml") for name in ("cart_pole", "reaction_wheel")]
+        printed = []
+        for precision in PRECISIONS:
+            program = self.folder / name_of(configuration) / precision / "bits"
+            printed += subprocess.run([program, *scenes], capture_output=True, text=True, check=True,
+                                      timeout=300).stdout.splitlines()
+        return printed
+
+    def _sources(self):
+        files = sorted((self.source / "src").rglob("*.c")) + sorted((self.source / "hal" / "sim").rglob("*.c"))
+        return files + [self.source / "hal" / "clock.c", self.source / "tests" / "determinism" / "bits.c"]
+
+    def _write_config(self):
+        template = (self.source / "cmake" / "config.h.in").read_text()
+        for precision, is_float in PRECISIONS.items():
+            folder = self.folder / "include" / precision / "mctau"
+            folder.mkdir(parents=True, exist_ok=True)
+            text = template.replace("@MCT_REAL_IS_FLOAT@", is_float).replace("@PROJECT_VERSION@", "0")
+            self._write_if_changed(folder / "config.h", text)
+
+    def _rules(self):
+        yield "rule compile"
+        yield "  command = $compiler $options -MD -MF $out.d -c $in -o $out"
+        yield "  depfile = $out.d"
+        yield "  deps = gcc"
+        yield "rule link"
+        yield "  command = $compiler $in -o $out"
+        for configuration in self.wanted:
+            compiler, options = configuration
+            # Another version of the compiler must not be taken for the one that made an object.
+            version = subprocess.run([compiler, "-dumpfullversion", "-dumpversion"], capture_output=True, text=True,
+                                     check=True).stdout.strip()
+            for precision in PRECISIONS:
+                folder = f"{name_of(configuration)}/{precision}"
+                includes = " ".join(f"-I{self.source / place}" for place in ("include", "src", "."))
+                objects = []
+                for file in self._sources():
+                    place = file.relative_to(self.source).with_suffix(".o")
+                    objects.append(f"{folder}/{place}")
+                    yield f"build {objects[-1]}: compile {file}"
+                    yield f"  compiler = {compiler}"
+                    yield f"  options = {ALWAYS} {options} -DCOMPILER={version} {includes} -Iinclude/{precision}"
+                yield f"build {folder}/bits: link {' '.join(objects)}"
+                yield f"  compiler = {compiler}"
+
+    @staticmethod
+    def _write_if_changed(file, text):
+        if not file.exists() or file.read_text() != text:
+            file.write_text(text)

@@ -1,0 +1,29 @@
+/* Seeded random numbers, the same on every machine and in both precisions (xorshift64*). */
+#ifndef MCT_TEST_RANDOM_H
+#define MCT_TEST_RANDOM_H
+
+#include <math.h>
+#include <stdint.h>
+
+typedef struct {
+    uint64_t state; /* not 0 */
+} test_random;
+
+static inline uint64_t random_bits(test_random *self) {
+    self->state ^= self->state >> 12;
+    self->state ^= self->state << 25;
+    self->state ^= self->state >> 27;
+    return self->state * UINT64_C(2685821657736338717);
+}
+
+/* Uniform in [low, high). */
+static inline double random_in(test_random *self, double low, double high) {
+    return low + (high - low) * ((double)(random_bits(self) >> 11) * 0x1p-53);
+}
+
+/* Its logarithm is uniform: every order of magnitude between low and high, both positive, is as likely. */
+static inline double random_scale(test_random *self, double low, double high) {
+    return exp(random_in(self, log(low), log(high)));
+}
+
+#endif

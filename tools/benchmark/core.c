@@ -1,0 +1,153 @@
+/*
+ * The core's own figures, in the precision of the library that this is linked with:
+ *   kernel SYSTEM STEPPER   one step of a kernel
+ *   plant SYSTEM STEPPER    the same with what a tick adds: bounds of the input, checks of the state, whole turns
+ *   tick SYSTEM MODE        a whole tick in lockstep: sensors, estimator, controller, supervisor, plant, record to a ring
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/sim/sim.h"
+#include "measure.h"
+#include "mctau/loop.h"
+
+enum { INPUTS = 64, SWING_UP_TICKS = 512, SETTLE_TICKS = 20000 };
+
+static void fail(const char *name, const char *why)
+{
+    fprintf(stderr, "benchmark: %s: %s\n", name, why);
+    exit(1);
+}
+
+/* --- steps --- */
+
+typedef struct {
+    mct_plant start, plant;
+    mct_real inputs[INPUTS]; /* held for a step each, and never the same for long: nothing comes to rest */
+} stepping;
+
+static void restart_plant(void *context)
+{
+    stepping *self = context;
+    self->plant = self->start;
+}
+
+static void run_kernel(void *context, long count)
+{
+    stepping *self = context;
+    for (long k = 0; k < count; k++) {
+        self->plant.kernel(&self->plant.constants, &self->plant.state, self->inputs[k % INPUTS], 1);
+    }
+}
+
+static void run_plant(void *context, long count)
+{
+    stepping *self = context;
+    for (long k = 0; k < count; k++) {
+        mct_plant_step(&self->plant, self->inputs[k % INPUTS]);
+    }
+}
+
+static void measure_steps(const measure_effort *effort, int system, int stepper)
+{
+    stepping self;
+    mct_scene scene;
+    char name[64];
+    mct_scene_defaults(&scene, system);
+    const mct_system *model = mct_systems[system];
+    const double *p = scene.parameters;
+    const double rate = p[model->resistance_parameter] / p[model->inductance_parameter];
+    const double limit = mct_steppers[stepper].motor_stability_limit;
+    scene.stepper = stepper;
+    scene.initial[model->upright_coordinate] = 2;
+    while ((scene.effects & MCT_MOTOR_INDUCTIVE) && limit > 0 && scene.dt * rate > 0.9 * limit) {
+        scene.dt /= 2; /* the cost of a step does not depend on its length */
+    }
+    if (mct_plant_init(&self.start, &scene, NULL) != MCT_OK) {
+        return; /* a stepper that does not suit */
+    }
+    for (int i = 0; i < INPUTS; i++) {
+        self.inputs[i] = (mct_real)((i * 37) % INPUTS - (INPUTS - 1) / 2.0) / 16;
+    }
+    snprintf(name, sizeof name, "kernel %s %s", model->name, mct_steppers[stepper].name);
+    measure(effort, name, run_kernel, restart_plant, &self, 0);
+    snprintf(name, sizeof name, "plant %s %s", model->name, mct_steppers[stepper].name);
+    measure(effort, name, run_plant, restart_plant, &self, 0);
+    if (self.plant.diverged_ticks != 0) {
+        fail(name, "diverged");
+    }
+}
+
+/* --- ticks --- */
+
+typedef struct {
+    mct_sim sim, sim_start;
+    mct_loop loop, loop_start; /* loop refers to loop and sim of this struct: copies come back to where they were */
+    mct_ring ring;
+    mct_mode mode;
+} ticking;
+
+static void restart_loop(void *context)
+{
+    ticking *self = context;
+    self->sim = self->sim_start;
+    self->loop = self->loop_start;
+}
+
+static void drain(mct_ring *ring)
+{
+    while (mct_ring_peek(ring) != NULL) {
+        mct_ring_pop(ring);
+    }
+}
+
+static void run_ticks(void *context, long count)
+{
+    ticking *self = context;
+    for (long k = 0; k < count; k++) {
+        mct_loop_tick(&self->loop);
+        if (k % (MCT_RING_SIZE / 2) == 0) {
+            drain(&self->ring);
+        }
+    }
+    drain(&self->ring);
+}
+
+static void measure_ticks(const measure_effort *effort, int system, mct_mode mode)
+{
+    static ticking self;
+    mct_scene scene;
+    mct_message why;
+    char name[64];
+    memset(&self, 0, sizeof self);
+    mct_message_clear(&why);
+    mct_scene_defaults(&scene, system);
+    scene.controller = MCT_CONTROLLER_SWING_UP_BALANCE;
+    if (mct_sim_init(&self.sim, &scene, &why) != MCT_OK ||
+        mct_loop_init(&self.loop, &scene, mct_sim_hal(&self.sim), &self.ring, (mct_samples){NULL, 0}, &why) != MCT_OK) {
+        fail(mct_systems[system]->name, why.text);
+    }
+    self.loop.hal.ops->open(self.loop.hal.context);
+    run_ticks(&self, mode == MCT_MODE_BALANCE ? SETTLE_TICKS : 16);
+    self.sim_start = self.sim;
+    self.loop_start = self.loop;
+    snprintf(name, sizeof name, "tick %s %s", mct_systems[system]->name, mct_mode_name(mode));
+    measure(effort, name, run_ticks, restart_loop, &self, mode == MCT_MODE_SWING_UP ? SWING_UP_TICKS : 0);
+    if (self.loop.controller.mode != mode || self.loop.supervisor.latched != 0 || self.ring.dropped != 0) {
+        fail(name, "was not in that mode to the end, or faulted, or lost records");
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const measure_effort effort = measure_effort_of(argc, argv);
+    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+        for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
+            measure_steps(&effort, system, stepper);
+        }
+        measure_ticks(&effort, system, MCT_MODE_SWING_UP);
+        measure_ticks(&effort, system, MCT_MODE_BALANCE);
+    }
+    return 0;
+}

@@ -1,0 +1,421 @@
+/* mctau list: what there is. Nothing is written here: all of it comes from the descriptors. */
+#include <stdio.h>
+#include <string.h>
+
+#include "json.h"
+#include "mctau/stepper.h"
+#include "say.h"
+#include "verbs.h"
+
+static const option options[] = {
+    OPTION_JSON,
+    {NULL, NULL, NULL, NULL},
+};
+
+static int run_verb(const arguments *given);
+
+const verb verb_list = {
+    .name = "list",
+    .doc = "lists systems with parameters, units, ranges and defaults; effects, steppers, controllers, scene keys",
+    .operand = "[SYSTEM]",
+    .text = "Lists all that a scene may hold. With SYSTEM, that system alone, with its parameters.",
+    .options = options,
+    .examples = "  mctau list\n"
+                "  mctau list cart_pole\n"
+                "  mctau list --json\n",
+    .exit_codes = "  0  well\n"
+                  "  2  no such system\n",
+    .run = run_verb,
+};
+
+static bool suits(const mct_system *system, int stepper)
+{
+    return system->kernel(stepper, system->standard_effects & MCT_KERNEL_EFFECTS) != NULL;
+}
+
+/* Name that an effect has in a mask, as a scene writes it. */
+static const char *effect_choice(const mct_effect *effect, uint32_t mask)
+{
+    static const char *const switched[] = {"false", "true"};
+    const uint32_t bits = mask & effect->mask;
+    int choice = 0;
+    while (choice < 2 && effect->bits[choice] != bits) {
+        choice++;
+    }
+    return effect->choices != NULL ? effect->choices[choice] : switched[choice];
+}
+
+/* Name of choice `index` of a field; NULL beyond the last. Systems and steppers name themselves. */
+static const char *choice_name(const mct_field *field, int index)
+{
+    if (field->choices != NULL) {
+        return field->choices[index];
+    }
+    if (field->offset == offsetof(mct_scene, system)) {
+        return index < MCT_SYSTEM_COUNT ? mct_systems[index]->name : NULL;
+    }
+    return index < MCT_STEPPER_COUNT ? mct_steppers[index].name : NULL;
+}
+
+/* The [controller] or [input] table's field `kind`: names of what there is. */
+static const mct_field *kind_of(const char *table)
+{
+    for (int i = 0; i < MCT_SCENE_TABLE_COUNT; i++) {
+        if (strcmp(mct_scene_tables[i].name, table) == 0) {
+            return &mct_scene_tables[i].fields[0];
+        }
+    }
+    return NULL;
+}
+
+/* Default of a text, which stands in the scene that the library fills. */
+static const char *default_text(const mct_scene *defaults, const mct_field *field)
+{
+    return (const char *)defaults + field->offset;
+}
+
+/* --- JSON --- */
+
+static void json_range(json *out, const mct_field *field)
+{
+    json_text(out, "unit", field->unit);
+    json_number(out, "minimum", field->minimum);
+    json_number(out, "maximum", field->maximum);
+    json_number(out, "default", field->standard);
+}
+
+static void json_quantity(json *out, const char *key, const mct_field *field)
+{
+    json_object(out, key);
+    json_text(out, "name", field->name);
+    json_range(out, field);
+    json_text(out, "doc", field->doc);
+    json_end_object(out);
+}
+
+static void json_coordinate(json *out, const mct_coordinate *coordinate)
+{
+    json_object(out, NULL);
+    json_text(out, "name", coordinate->position.name);
+    json_range(out, &coordinate->position);
+    json_text(out, "doc", coordinate->position.doc);
+    json_boolean(out, "is_angle", coordinate->is_angle);
+    json_quantity(out, "rate", &coordinate->rate);
+    json_quantity(out, "encoder", &coordinate->encoder);
+    json_number(out, "position_weight", coordinate->position_weight);
+    json_number(out, "rate_weight", coordinate->rate_weight);
+    json_end_object(out);
+}
+
+/* A switch is a boolean, anything else a name. */
+static void json_choice_of(json *out, const char *key, const mct_effect *effect, uint32_t mask)
+{
+    if (effect->choices != NULL) {
+        json_text(out, key, effect_choice(effect, mask));
+    } else {
+        json_boolean(out, key, (mask & effect->mask) != 0);
+    }
+}
+
+static void json_system(json *out, const mct_system *system)
+{
+    json_object(out, NULL);
+    json_text(out, "name", system->name);
+    json_text(out, "doc", system->doc);
+    json_text(out, "source", system->source);
+    json_list(out, "coordinates");
+    for (int i = 0; i < system->coordinate_count; i++) {
+        json_coordinate(out, &system->coordinates[i]);
+    }
+    json_end_list(out);
+    json_text(out, "driven_coordinate", system->coordinates[system->driven_coordinate].position.name);
+    json_text(out, "upright_coordinate", system->coordinates[system->upright_coordinate].position.name);
+    json_quantity(out, "input_without_motor", system->input_without_motor);
+    json_list(out, "parameters");
+    for (int i = 0; i < system->parameter_count; i++) {
+        json_quantity(out, NULL, &system->parameters[i]);
+    }
+    json_end_list(out);
+    json_list(out, "effects");
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        if (system->effects & mct_effects[i].mask) {
+            json_object(out, NULL);
+            json_text(out, "name", mct_effects[i].name);
+            json_choice_of(out, "default", &mct_effects[i], system->standard_effects);
+            json_end_object(out);
+        }
+    }
+    json_end_list(out);
+    json_list(out, "particles");
+    for (int i = 0; i < system->particle_count; i++) {
+        json_text(out, NULL, system->particle_names[i]);
+    }
+    json_end_list(out);
+    json_list(out, "steppers");
+    for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+        if (suits(system, i)) {
+            json_text(out, NULL, mct_steppers[i].name);
+        }
+    }
+    json_end_list(out);
+    json_end_object(out);
+}
+
+static void json_choices(json *out, const char *key, const mct_field *field)
+{
+    json_list(out, key);
+    for (int i = 0; choice_name(field, i) != NULL; i++) {
+        json_text(out, NULL, choice_name(field, i));
+    }
+    json_end_list(out);
+}
+
+static void json_key(json *out, const mct_field *field, const mct_scene *defaults)
+{
+    static const char *const kinds[] = {"real", "integer", "boolean", "choice", "text", "list"};
+    json_object(out, NULL);
+    json_text(out, "name", field->name);
+    json_text(out, "kind", kinds[field->kind]);
+    json_text(out, "unit", field->unit);
+    switch (field->kind) {
+    case MCT_FIELD_REAL:
+    case MCT_FIELD_INTEGER:
+        json_number(out, "minimum", field->minimum);
+        json_number(out, "maximum", field->maximum);
+        json_number(out, "default", field->standard);
+        break;
+    case MCT_FIELD_BOOLEAN:
+        json_boolean(out, "default", field->standard > 0);
+        break;
+    case MCT_FIELD_CHOICE:
+        json_choices(out, "choices", field);
+        if (field->choices != NULL) { /* else by system */
+            json_text(out, "default", choice_name(field, (int)field->standard));
+        }
+        break;
+    case MCT_FIELD_TEXT:
+        json_text(out, "default", default_text(defaults, field));
+        break;
+    case MCT_FIELD_LIST:
+        json_number(out, "minimum", field->minimum);
+        json_number(out, "maximum", field->maximum);
+        break;
+    }
+    json_text(out, "doc", field->doc);
+    json_end_object(out);
+}
+
+static void json_tables(json *out)
+{
+    mct_scene defaults;
+    mct_scene_defaults(&defaults, 0);
+    json_list(out, "tables");
+    for (int i = 0; i < MCT_SCENE_TABLE_COUNT; i++) {
+        const mct_scene_table *table = &mct_scene_tables[i];
+        json_object(out, NULL);
+        json_text(out, "name", table->name);
+        json_text(out, "doc", table->doc);
+        json_list(out, "keys");
+        for (int j = 0; j < table->field_count; j++) {
+            json_key(out, &table->fields[j], &defaults);
+        }
+        json_end_list(out);
+        json_end_object(out);
+    }
+    json_end_list(out);
+}
+
+static void print_json(const mct_system *only)
+{
+    json out = json_begin(stdout, "mctau.list/1");
+    json_list(&out, "systems");
+    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+        if (only == NULL || only == mct_systems[i]) {
+            json_system(&out, mct_systems[i]);
+        }
+    }
+    json_end_list(&out);
+    json_list(&out, "effects");
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        json_object(&out, NULL);
+        json_text(&out, "name", mct_effects[i].name);
+        json_text(&out, "doc", mct_effects[i].doc);
+        json_list(&out, "choices");
+        for (int j = 0; mct_effects[i].choices != NULL && mct_effects[i].choices[j] != NULL; j++) {
+            json_text(&out, NULL, mct_effects[i].choices[j]);
+        }
+        if (mct_effects[i].choices == NULL) {
+            json_boolean(&out, NULL, false);
+            json_boolean(&out, NULL, true);
+        }
+        json_end_list(&out);
+        json_end_object(&out);
+    }
+    json_end_list(&out);
+    json_list(&out, "steppers");
+    for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+        json_object(&out, NULL);
+        json_text(&out, "name", mct_steppers[i].name);
+        json_integer(&out, "order", mct_steppers[i].order);
+        json_text(&out, "doc", mct_steppers[i].doc);
+        json_number(&out, "motor_stability_limit", mct_steppers[i].motor_stability_limit);
+        json_end_object(&out);
+    }
+    json_end_list(&out);
+    json_choices(&out, "controllers", kind_of("controller"));
+    json_choices(&out, "inputs", kind_of("input"));
+    json_tables(&out);
+    json_finish(&out);
+}
+
+/* --- for people --- */
+
+static void print_quantity(const mct_field *field)
+{
+    printf("  %-24s %-8s %12g  %10g to %-10g %s\n", field->name, field->unit, field->standard, field->minimum, field->maximum,
+           field->doc);
+}
+
+static void print_heading(const char *title)
+{
+    printf("\n%-26s %-8s %12s  %24s\n", title, "unit", "default", "allowed");
+}
+
+static void print_effects(const mct_system *system)
+{
+    printf("\n[effects]\n");
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        const mct_effect *effect = &mct_effects[i];
+        if (system->effects & effect->mask) {
+            printf("  %-24s default %-14s %s\n", effect->name, effect_choice(effect, system->standard_effects), effect->doc);
+        }
+    }
+}
+
+static void print_system(const mct_system *system)
+{
+    printf("%s: %s (source %s)\n", system->name, system->doc, system->source);
+    print_heading("[initial]");
+    for (int i = 0; i < mct_state_count(system, system->effects); i++) {
+        print_quantity(mct_state_field(system, i));
+    }
+    print_heading("[parameters]");
+    for (int i = 0; i < system->parameter_count; i++) {
+        print_quantity(&system->parameters[i]);
+    }
+    print_heading("[sensors]");
+    for (int i = 0; i < system->coordinate_count; i++) {
+        print_quantity(&system->coordinates[i].encoder);
+    }
+    print_heading("[weights]");
+    for (int i = 0; i < 2 * system->coordinate_count; i++) {
+        const mct_field *field = mct_state_field(system, i);
+        const mct_coordinate *coordinate = &system->coordinates[i % system->coordinate_count];
+        printf("  %-24s %-8s %12g  deviation that costs a controller as much as the full input\n", field->name, field->unit,
+               i < system->coordinate_count ? coordinate->position_weight : coordinate->rate_weight);
+    }
+    print_effects(system);
+    printf("\nInput: a voltage [V]; with motor = \"off\" a %s [%s], %s\n", system->input_without_motor->name,
+           system->input_without_motor->unit, system->input_without_motor->doc);
+    printf("Driven: %s. Upright: %s = 0. Particles:", system->coordinates[system->driven_coordinate].position.name,
+           system->coordinates[system->upright_coordinate].position.name);
+    for (int i = 0; i < system->particle_count; i++) {
+        printf(" %s", system->particle_names[i]);
+    }
+    printf("\n");
+}
+
+static void print_steppers(const mct_system *only)
+{
+    printf("Steppers (scene.stepper)\n");
+    for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+        printf("  %-10s order %d  %s", mct_steppers[i].name, mct_steppers[i].order, mct_steppers[i].doc);
+        for (int j = 0; j < MCT_SYSTEM_COUNT; j++) {
+            if (!suits(mct_systems[j], i) && (only == NULL || only == mct_systems[j])) {
+                printf("; not for %s", mct_systems[j]->name);
+            }
+        }
+        printf("\n");
+    }
+}
+
+static void print_key(const mct_field *field, const mct_scene *defaults)
+{
+    printf("  %-24s ", field->name);
+    switch (field->kind) {
+    case MCT_FIELD_REAL:
+    case MCT_FIELD_INTEGER:
+        printf("%-8s %12g  %10g to %-10g %s\n", field->unit, field->standard, field->minimum, field->maximum, field->doc);
+        return;
+    case MCT_FIELD_LIST:
+        printf("%-8s %12s  %10g to %-10g %s\n", field->unit, "[]", field->minimum, field->maximum, field->doc);
+        return;
+    case MCT_FIELD_BOOLEAN:
+        printf("%-8s %12s  %24s %s\n", "", field->standard > 0 ? "true" : "false", "true or false", field->doc);
+        return;
+    case MCT_FIELD_TEXT:
+        printf("%-8s %12s  %24s %s\n", "", default_text(defaults, field), "a text", field->doc);
+        return;
+    case MCT_FIELD_CHOICE:
+        printf("%-8s %12s  %24s %s:", "", field->choices != NULL ? choice_name(field, (int)field->standard) : "", "a name",
+               field->doc);
+        for (int i = 0; choice_name(field, i) != NULL; i++) {
+            printf("%s %s", i > 0 ? "," : "", choice_name(field, i));
+        }
+        printf("\n");
+        return;
+    }
+}
+
+static void print_all(void)
+{
+    mct_scene defaults;
+    mct_scene_defaults(&defaults, 0);
+    printf("Systems (scene.system); mctau list SYSTEM shows coordinates, parameters and effects\n");
+    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+        printf("  %-20s %s\n", mct_systems[i]->name, mct_systems[i]->doc);
+    }
+    printf("\n");
+    print_steppers(NULL);
+    printf("\nEffects ([effects])\n");
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        printf("  %-20s %s\n", mct_effects[i].name, mct_effects[i].doc);
+    }
+    printf("\nTables of a scene, beside [parameters], [effects], [initial] and [weights], whose keys are the system's\n");
+    for (int i = 0; i < MCT_SCENE_TABLE_COUNT; i++) {
+        const mct_scene_table *table = &mct_scene_tables[i];
+        printf("\n[%s]  %s\n", table->name, table->doc);
+        for (int j = 0; j < table->field_count; j++) {
+            print_key(&table->fields[j], &defaults);
+        }
+    }
+}
+
+static int run_verb(const arguments *given)
+{
+    const mct_system *only = NULL;
+    for (int i = 0; given->operand != NULL && i < MCT_SYSTEM_COUNT; i++) {
+        if (strcmp(mct_systems[i]->name, given->operand) == 0) {
+            only = mct_systems[i];
+        }
+    }
+    if (given->operand != NULL && only == NULL) {
+        mct_message names;
+        mct_message_clear(&names);
+        for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+            mct_message_add(&names, i > 0 ? ", " : "");
+            mct_message_add(&names, mct_systems[i]->name);
+        }
+        return say(EXIT_USAGE, "list: found system %s; allowed %s", given->operand, names.text);
+    }
+    if (arguments_value(given, "json") != NULL) {
+        print_json(only);
+    } else if (only != NULL) {
+        print_system(only);
+        printf("\n");
+        print_steppers(only);
+    } else {
+        print_all();
+    }
+    return EXIT_WELL;
+}

@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""Makes one HTML page of a run: what happened, the mechanism drawn, plots, the scene, how to run it again.
+
+The page stands alone: no script, no download. Python's own library is all that it needs.
+"""
+
+import argparse
+import html
+import os
+import pathlib
+import shlex
+import sys
+
+import mechanism
+import run_data
+from plot import Plot, number
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+VERDICTS = {"balanced": ("Balanced", "good"), "not_balanced": ("Not balanced", "bad"), "faulted": ("Faulted", "bad"),
+            "diverged": ("Diverged", "bad"), "stopped": ("Stopped", "bad"), "finished": ("Finished", "")}
+
+
+def words(name):
+    return name.replace("_", " ")
+
+
+def lead(run):
+    """What happened, in plain sentences."""
+    result, said = run.result, []
+    if run.controlled and run.caught_at is not None:
+        if run.degrees and abs(run.degrees[0]) > 90:
+            said.append(f"From hanging, the {words(run.name)} swung itself up in {run.caught_at:.2f} s.")
+        else:
+            said.append(f"Balancing began at {run.caught_at:.2f} s.")
+        if result["upright_at"] is not None:
+            said.append(f"Since {result['upright_at']:.2f} s it has stood within {run_data.UPRIGHT:g} degrees of upright, "
+                        f"and in the last half of that time within {run.worst_degrees(settled(run)):.2f} degrees.")
+    elif run.controlled:
+        nearest = min(abs(d) for d in run.degrees)
+        said.append(f"In {run.duration:g} s the {words(run.name)} came to within {nearest:.1f} degrees of upright, "
+                    "but was not balancing at the end.")
+    else:
+        kind = run.scene("input", "kind")
+        moved = "free motion" if kind in (None, "none") else f"open-loop motion under the input {kind}"
+        said.append(f"{run.duration:g} s of {moved} of the {words(run.name)}, without a controller.")
+    if run.faults:
+        time, name = run.faults[0]
+        said.append(f"At {time:.3f} s the supervisor latched {name}: zero volts from there on.")
+    if result["verdict"] == "diverged":
+        said.append("The simulation left all bounds; the last sane state was kept.")
+    return " ".join(said)
+
+
+def settled(run):
+    begin = run.result["upright_at"]
+    return begin + 0.5 * (run.duration - begin)
+
+
+def figures(run):
+    """(what, value, unit) of the tiles."""
+    result, found = run.result, []
+    if run.caught_at is not None:
+        found.append(("swing-up took", f"{run.caught_at:.2f}", "s"))
+    if result["upright_at"] is not None and run.controlled:
+        found.append(("upright since", f"{result['upright_at']:.2f}", "s"))
+        found.append(("deviation, settled, rms", f"{run.rms_degrees(settled(run)):.3f}", "deg"))
+    if run.name == "cart_pole":
+        found.append(("cart went as far as", f"{max(map(abs, run.table['cart_position'])):.3f}", "m"))
+    else:
+        found.append(("fastest wheel", f"{max(map(abs, run.table['wheel_rate'])):.0f}", "rad/s"))
+    if run.scene.has_motor:
+        found.append(("largest voltage", f"{max(map(abs, run.table['applied'])):.2f}", "V"))
+    else:
+        change = run.energy[-1] - run.energy[0]
+        found.append(("energy, from beginning to end", f"{change:+.3g}".replace("-", "\u2212"), "J"))
+    if not run.scene("scene", "realtime") and result["ns_per_tick"] > 0:
+        found.append(("speed", f"{1e9 * result['dt'] / result['ns_per_tick']:.0f}", "\u00d7 real time"))
+    found.append(("faults", str(len(run.faults)) if run.faults else "none", ""))
+    return found
+
+
+def pictures(run):
+    drawn = mechanism.of(run)
+    begin, end = mechanism.interesting(run)
+    poses = 16
+    every = (end - begin) / (poses - 1)
+    swing = "The swing that was caught" if run.caught_at else "The first swing"
+    film_end = run.duration if run.caught_at is None else min(run.duration, run.caught_at * 1.12 + 0.2)
+    frames = mechanism.film(drawn, 0.0, film_end - run.result["dt"], 24 if run.name == "reaction_wheel" else 18)
+    strip = "".join(f'<figure class="{mode}">{svg}{number(round(time, 2))} s</figure>' for time, mode, svg in frames)
+    return (f'<h2>Motion</h2><div class="pictures"><figure>{mechanism.stroboscope(drawn, begin, end, poses)}'
+            f'<figcaption class="note">{swing}: from {begin:.2f} s, one pose every {1e3 * every:.0f} ms, the later '
+            f'the darker.</figcaption></figure><div><div class="film" style="--frame:{drawn.frame_width}px">{strip}</div>'
+            f'<p class="note">{len(frames)} moments at equal times, each with the path of the half second before it.</p>'
+            '</div></div>')
+
+
+def plots(run):
+    """All panels, in the order in which they are read."""
+    time, table, end = run.time, run.table, run.duration
+    upright = run.result["upright_at"] if run.controlled else None
+    made = []
+
+    def panel(title, unit, **options):
+        plot = Plot(title, unit, options.pop("begin", 0.0), end, **options)
+        plot.modes(run.modes)
+        plot.faults(run.faults)
+        made.append(plot)
+        return plot
+
+    def estimated(plot, name, wraps=None):
+        if f"{name}_estimate" in table:
+            plot.line(time, table[f"{name}_estimate"], "estimate", "estimated", wraps)
+        plot.line(time, table[name], "true", "true", wraps)
+
+    angle = panel(words(run.angle_name), "deg from upright", low=-190, high=190, is_angle=True)
+    angle.band(-run_data.UPRIGHT, run_data.UPRIGHT, "upright", f"within {run_data.UPRIGHT:g} deg")
+    angle.line(time, run.degrees, "true", "", wraps=180)
+    if upright is not None and end - upright > 0.5:
+        limit = 1.25 * run_data.UPRIGHT
+        near = panel(f"{words(run.angle_name)}, once upright", "deg", begin=upright, low=-limit, high=limit)
+        near.band(-run_data.UPRIGHT, run_data.UPRIGHT, "upright", "")
+        estimate = [run_data.folded(v * 180 / 3.141592653589793) for v in table[f"{run.angle_name}_estimate"]]
+        near.line(time, estimate, "estimate", "estimated")
+        near.line(time, run.degrees, "true", "true")
+    if any(table["applied"]):
+        name, unit = ("voltage", "V") if run.scene.has_motor else (run.system["input_without_motor"]["name"],
+                                                                  run.system["input_without_motor"]["unit"])
+        input_ = panel(name, unit)
+        if table["wanted"] != table["applied"]:
+            input_.line(time, table["wanted"], "wanted", "wanted")
+        input_.line(time, table["applied"], "true", "applied")
+        if run.scene.has_motor and run.scene("effects", "saturation") in (True, "true"):
+            supply = float(run.scene("parameters", "supply_voltage"))
+            input_.level(supply, "limit", "supply")
+            input_.level(-supply, "limit", "supply")
+    for coordinate in run.system["coordinates"]:
+        name, rate = coordinate["name"], coordinate["rate"]["name"]
+        if not coordinate["is_angle"]:
+            position = panel(words(name), coordinate["unit"])
+            estimated(position, name)
+            if run.controlled:
+                track = float(run.scene("controller", "track_half_length"))
+                position.level(track, "limit", "end of the track")
+                position.level(-track, "limit", "end of the track")
+        estimated(panel(words(rate), coordinate["rate"]["unit"]), rate)
+    if "current" in table:
+        panel("current", "A").line(time, table["current"], "true", "")
+    energy = panel("energy of the model" if run.is_varied else "energy", "J")
+    energy.line(time, run.energy, "true", "kinetic + potential")
+    energy.level(run.upright_energy, "target", "at rest upright")
+    return made
+
+
+def mode_key(run):
+    names = dict.fromkeys(span.mode for span in run.modes if span.mode != "open_loop")
+    return "".join(f'<span class="key"><i class="swatch mode {name}"></i>{words(name)}</span> ' for name in names)
+
+
+def command_lines(run):
+    sets = "".join(f" --set {shlex.quote(override)}" for override in run.scene.overrides)
+    scene = shlex.quote(run.scene.path)
+    return (f"mctau run {scene}{sets} --csv run.csv --json > run.json\n"
+            f"tools/report/report.py --csv run.csv --json run.json --scene {scene}{sets} -o report.html")
+
+
+def fault_table(run):
+    if not run.faults:
+        return ""
+    rows = "".join(f'<tr><td>{html.escape(name)}<td class="n">{time:.3f} s<td class="n">'
+                   f'{run.result["fault_ticks"].get(name, 0)}' for time, name in run.faults)
+    return ('<h2>Faults</h2><p class="note">What each one means and what to do: docs/control.md.</p><div class="scroll"><table>'
+            f'<tr><th>fault<th>first latched<th>seen on ticks{rows}</table></div>')
+
+
+def final_state(run):
+    rows = "".join(f'<tr><td>{name}<td class="n">{run.result["state"][name]!r}<td class="n">{run.result["state_hex"][name]}'
+                   for name in run.result["state"])
+    return ('<h2>State at the end</h2><p class="note">The same scene gives these bits on every machine.</p><div class="scroll"><table>'
+            f'<tr><th>state<th>SI units<th>bits{rows}</table></div>')
+
+
+def page(run):
+    result = run.result
+    verdict, tone = VERDICTS.get(result["verdict"], (words(result["verdict"]), ""))
+    tiles = "".join(f"<div><dt>{html.escape(what)}</dt><dd>{html.escape(value)} <small>{html.escape(unit)}</small></dd></div>"
+                    for what, value, unit in figures(run))
+    drawn = plots(run)
+    panels = "".join(plot.html() for plot in drawn)
+    sets = "".join(f"\n# from the command line: {override}" for override in run.scene.overrides)
+    version = run.command.text("--version")
+    varied = ('<p class="note">The plant was varied; energies are those of the scene\'s own parameters.</p>' if run.is_varied else "")
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{words(run.name)}: {verdict.lower()}</title><style>{(HERE / "page.css").read_text(encoding="utf-8")}</style></head><body>
+<header><div class="kind"><span>mctau run</span><span>{html.escape(run.scene.path)}</span></div>
+<h1 class="{tone}">{verdict}</h1><p class="lead">{html.escape(lead(run))}</p></header>
+<dl class="figures">{tiles}</dl>
+{fault_table(run)}
+{pictures(run)}
+<h2>Over time</h2><p class="note">Seconds to the right. {mode_key(run)}</p>{varied}{panels}
+{final_state(run)}
+<h2>Scene</h2><pre>{html.escape(run.scene.text.rstrip() + sets)}</pre>
+<h2>How to run it again</h2><pre>{html.escape(command_lines(run))}</pre>
+<p class="note">{html.escape(version)}; {run.name}, stepper {result["stepper"]}, precision {result["precision"]}, tick {result["dt"]:g} s,
+{result["ticks"]} ticks. Each curve shows the smallest and the largest value within a pixel's width.</p>
+</body></html>
+"""
+
+
+def arguments(argv):
+    parser = argparse.ArgumentParser(prog="tools/report/report.py", description="Makes one HTML page of a run.",
+                                     epilog="exit codes: 0 well, 2 wrong input, 3 a file could not be read or written")
+    parser.add_argument("--csv", required=True, help="what mctau run --csv wrote")
+    parser.add_argument("--json", required=True, help="what mctau run --json printed")
+    parser.add_argument("--scene", required=True, help="the scene's file")
+    parser.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="as given to mctau run")
+    parser.add_argument("--mctau", default=os.environ.get("MCTAU", str(ROOT / "build" / "host" / "mctau")), help="the command")
+    parser.add_argument("-o", "--output", required=True, help="the page to write")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    given = arguments(argv)
+    try:
+        run = run_data.Run(given.csv, given.json, given.scene, given.set, run_data.Command(given.mctau))
+        text = page(run)
+        try:
+            pathlib.Path(given.output).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise run_data.Complaint(f"{given.output}: the page cannot be written: {error.strerror}", run_data.INPUT_OUTPUT) from None
+    except run_data.Complaint as complaint:
+        print(f"report: {complaint}", file=sys.stderr)
+        return complaint.code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
