@@ -9,11 +9,7 @@
 #include "mctau/motor.h"
 #include "mctau/real.h"
 #include "mctau/step.h"
-
-/** Inverse of a constant symmetric matrix, plus what is taken implicitly in a stepper. */
-typedef struct {
-    mct_real a11, a12, a22;
-} mct_inverse2;
+#include "mctau/symmetric2.h"
 
 typedef struct {
     mct_step step;
@@ -27,9 +23,9 @@ typedef struct {
     mct_real coulomb[2];         /**< dry friction [N m] */
     mct_real inverse_arm;        /**< 1 / arm_inertia */
     mct_real inverse_wheel;      /**< 1 / wheel_inertia */
-    mct_inverse2 inverse_mass;   /**< M^-1 */
-    mct_inverse2 implicit;       /**< (M + h D)^-1, for euler */
-    mct_inverse2 symmetric;      /**< (M + h D / 2)^-1, the averaged motor included, for leap */
+    mct_symmetric2 inverse_mass;   /**< M^-1 */
+    mct_symmetric2 implicit;       /**< (M + h D)^-1, for euler */
+    mct_symmetric2 symmetric;      /**< (M + h D / 2)^-1, the averaged motor included, for leap */
     mct_motor motor;
     mct_expo expo;
     /* geometry of the equivalent particles */

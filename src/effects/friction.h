@@ -12,11 +12,7 @@
 #define MCT_EFFECTS_FRICTION_H
 
 #include "mctau/real.h"
-
-/* A symmetric 2 x 2 matrix. */
-typedef struct {
-    mct_real a11, a12, a22;
-} mct_symmetric2;
+#include "mctau/symmetric2.h"
 
 MCT_INLINE mct_real mct_clamp(mct_real value, mct_real bound)
 {

@@ -18,6 +18,26 @@
 #include "mctau/motor.h"
 #include "mctau/system.h"
 
+/*
+ * Force of the drive, but for the damping of a quasi-static motor, which joins the viscous one. `current` is that of an
+ * inductive motor, or its mean over a step; not read otherwise.
+ */
+MCT_INLINE mct_real mct_motor_force(const mct_motor *motor, unsigned effects, mct_real u, mct_real current)
+{
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        return motor->force_per_ampere * current;
+    }
+    return (effects & MCT_MOTOR_QUASI_STATIC) ? motor->force_per_volt * u : u;
+}
+
+/* Current after a step h of the implicit Euler method, at the old rate. */
+MCT_INLINE mct_real mct_motor_implicit_current(const mct_motor *motor, mct_real h, mct_real voltage, mct_real rate,
+                                               mct_real current)
+{
+    const mct_real gain = h * motor->inverse_inductance;
+    return (current + gain * (voltage - motor->emf * rate)) / (1 + gain * motor->resistance);
+}
+
 /* Current when L = 0. */
 MCT_INLINE mct_real mct_motor_quasi_static_current(const mct_motor *motor, mct_real voltage, mct_real rate)
 {

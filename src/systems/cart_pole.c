@@ -105,15 +105,6 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return status;
 }
 
-/* Force of the track drive on the cart, but for what is proportional to the cart's velocity (cart_damping). */
-MCT_INLINE mct_real drive_force(const constants_t *k, unsigned effects, mct_real u, mct_real current)
-{
-    if (effects & MCT_MOTOR_INDUCTIVE) {
-        return k->motor.force_per_ampere * current;
-    }
-    return (effects & MCT_MOTOR_QUASI_STATIC) ? k->motor.force_per_volt * u : u;
-}
-
 MCT_INLINE bool is_cart_damped(unsigned effects)
 {
     return (effects & (MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC)) != 0;
@@ -136,7 +127,7 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     mct_real s, c;
     mct_sincos(x[1], &s, &c);
     const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
-    mct_real f1 = drive_force(k, effects, u, current) + k->moment * s * thd * thd;
+    mct_real f1 = mct_motor_force(&k->motor, effects, u, current) + k->moment * s * thd * thd;
     mct_real f2 = 0;
     if (effects & MCT_GRAVITY) {
         f2 = k->weight_moment * s;
@@ -184,11 +175,10 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
     mct_sincos(x[1], &s, &c);
     mct_real current = 0;
     if (effects & MCT_MOTOR_INDUCTIVE) {
-        const mct_real gain = h * k->motor.inverse_inductance;
-        current = (x[4] + gain * (u - k->motor.emf * pd)) / (1 + gain * k->motor.resistance);
+        current = mct_motor_implicit_current(&k->motor, h, u, pd, x[4]);
         dx[4] = current - x[4];
     }
-    mct_real f1 = drive_force(k, effects, u, current) + k->moment * s * thd * thd;
+    mct_real f1 = mct_motor_force(&k->motor, effects, u, current) + k->moment * s * thd * thd;
     mct_real f2 = 0;
     mct_real e11 = 0;
     mct_real e22 = 0;
@@ -224,7 +214,7 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
         current = mct_motor_mean_current(&k->motor, u, pd, x[4]);
         e11 = h * k->motor.force_per_ampere * k->motor.emf * k->motor.mean_from_change;
     }
-    mct_real f1 = drive_force(k, effects, u, current) + centrifugal * thd;
+    mct_real f1 = mct_motor_force(&k->motor, effects, u, current) + centrifugal * thd;
     mct_real f2 = 0;
     if (effects & MCT_GRAVITY) {
         f2 = k->weight_moment * s;

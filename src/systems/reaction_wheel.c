@@ -74,12 +74,12 @@ static const mct_field torque_field = MCT_QUANTITY("torque", "N m", -1e9, 1e9, 0
 static const char *const particle_names[] = {"arm_outer", "arm_inner", "wheel_1", "wheel_2"};
 
 /* Adds the entries (e11, e22) to M and inverts it: J + e11 and I_w + e22 never meet in a difference that cancels. */
-static mct_inverse2 inverse_of(double J, double I_w, double e11, double e22)
+static mct_symmetric2 inverse_of(double J, double I_w, double e11, double e22)
 {
     const double m11 = J + I_w + e11;
     const double m22 = I_w + e22;
     const double det = (J + e11) * m22 + I_w * e22;
-    return (mct_inverse2){(mct_real)(m22 / det), (mct_real)(-I_w / det), (mct_real)(m11 / det)};
+    return (mct_symmetric2){(mct_real)(m22 / det), (mct_real)(-I_w / det), (mct_real)(m11 / det)};
 }
 
 /* xdot = A x + B input + e g(th1), x = (th1, th2, th1d, th2d, current); returns the number of states. */
@@ -181,8 +181,8 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->wheel_radius = (mct_real)mct_sqrt(I_w / p[WHEEL_MASS]);
     k->arm_radius = (mct_real)a;
     k->wheel_particle_mass = (mct_real)(0.5 * p[WHEEL_MASS]);
-    k->outer_arm_mass = (mct_real)(0.5 * (sum + difference));
-    k->inner_arm_mass = (mct_real)(0.5 * (sum - difference));
+    k->outer_arm_mass = (mct_real)mct_max(0, 0.5 * (sum + difference));
+    k->inner_arm_mass = (mct_real)mct_max(0, 0.5 * (sum - difference)); /* rounding may take it below */
 
     double A[MCT_MAX_STATES * MCT_MAX_STATES];
     double B[MCT_MAX_STATES];
@@ -193,15 +193,6 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
         mct_message_add(why, "scene.dt: the linear part of this scene is too fast for the exact flow over one step");
     }
     return status;
-}
-
-/* Torque of the motor, but for what is proportional to the wheel's rate (wheel_damping). */
-MCT_INLINE mct_real drive_torque(const constants_t *k, unsigned effects, mct_real u, mct_real current)
-{
-    if (effects & MCT_MOTOR_INDUCTIVE) {
-        return k->motor.force_per_ampere * current;
-    }
-    return (effects & MCT_MOTOR_QUASI_STATIC) ? k->motor.force_per_volt * u : u;
 }
 
 /* tau at arm angle and rates. */
@@ -228,7 +219,7 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     const constants_t *k = constants;
     const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
     mct_real tau[2];
-    torques(k, effects, x[0], x + 2, drive_torque(k, effects, u, current), tau);
+    torques(k, effects, x[0], x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
     dx[0] = x[2];
     dx[1] = x[3];
     dx[2] = (tau[0] - tau[1]) * k->inverse_arm;
@@ -238,7 +229,7 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     }
 }
 
-MCT_INLINE void impulse(mct_inverse2 inverse, mct_real h, const mct_real *tau, mct_real *dv)
+MCT_INLINE void impulse(mct_symmetric2 inverse, mct_real h, const mct_real *tau, mct_real *dv)
 {
     dv[0] = h * (inverse.a11 * tau[0] + inverse.a12 * tau[1]);
     dv[1] = h * (inverse.a12 * tau[0] + inverse.a22 * tau[1]);
@@ -250,12 +241,11 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
     const constants_t *k = constants;
     mct_real current = 0;
     if (effects & MCT_MOTOR_INDUCTIVE) {
-        const mct_real gain = k->step.h * k->motor.inverse_inductance;
-        current = (x[4] + gain * (u - k->motor.emf * x[3])) / (1 + gain * k->motor.resistance);
+        current = mct_motor_implicit_current(&k->motor, k->step.h, u, x[3], x[4]);
         dx[4] = current - x[4];
     }
     mct_real tau[2];
-    torques(k, effects, x[0], x + 2, drive_torque(k, effects, u, current), tau);
+    torques(k, effects, x[0], x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
     impulse(k->implicit, k->step.h, tau, dx + 2);
 }
 
@@ -268,7 +258,7 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
         current = mct_motor_mean_current(&k->motor, u, x[3], x[4]);
     }
     mct_real tau[2];
-    torques(k, effects, x[0], x + 2, drive_torque(k, effects, u, current), tau);
+    torques(k, effects, x[0], x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
     impulse(k->symmetric, k->step.h, tau, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_change(&k->motor, u, x[3], x[4], dx[3]);
@@ -289,8 +279,7 @@ static inline void friction(const void *constants, unsigned effects, const mct_r
     (void)effects;
     (void)u;
     const constants_t *k = constants;
-    const mct_symmetric2 W = {k->inverse_mass.a11, k->inverse_mass.a12, k->inverse_mass.a22};
-    mct_friction_correct(W, k->coulomb, k->step.h, x + 2, dx);
+    mct_friction_correct(k->inverse_mass, k->coulomb, k->step.h, x + 2, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_evaluation *out)
@@ -313,9 +302,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         drive = k->motor.force_per_ampere * out->current;
     }
     const mct_real smooth[2] = {k->weight_moment * s - k->arm_viscous * arm_rate, drive - k->wheel_viscous * wheel_rate};
-    const mct_symmetric2 W = {k->inverse_mass.a11, k->inverse_mass.a12, k->inverse_mass.a22};
     mct_real dry[2];
-    mct_friction_force(W, k->coulomb, x + 2, smooth, dry);
+    mct_friction_force(k->inverse_mass, k->coulomb, x + 2, smooth, dry);
     out->tau[0] = smooth[0] + dry[0];
     out->tau[1] = smooth[1] + dry[1];
     out->acceleration[0] = (out->tau[0] - out->tau[1]) * k->inverse_arm;

@@ -12,7 +12,8 @@ class Mechanism:
 
 
 class ReactionWheel(Mechanism):
-    frame_width = 88  # [px] least width of a frame of the film
+    frame_width = 80  # [px] least width of a frame of the film
+    frames = 24
 
     def __init__(self, run):
         super().__init__(run)
@@ -45,6 +46,7 @@ class ReactionWheel(Mechanism):
 
 class CartPole(Mechanism):
     frame_width = 150
+    frames = 15
 
     def __init__(self, run):
         super().__init__(run)

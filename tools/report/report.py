@@ -13,7 +13,7 @@ import sys
 
 import mechanism
 import run_data
-from plot import Plot, number
+from plot import Plot
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -87,8 +87,8 @@ def pictures(run):
     every = (end - begin) / (poses - 1)
     swing = "The swing that was caught" if run.caught_at else "The first swing"
     film_end = run.duration if run.caught_at is None else min(run.duration, run.caught_at * 1.12 + 0.2)
-    frames = mechanism.film(drawn, 0.0, film_end - run.result["dt"], 24 if run.name == "reaction_wheel" else 18)
-    strip = "".join(f'<figure class="{mode}">{svg}{number(round(time, 2))} s</figure>' for time, mode, svg in frames)
+    frames = mechanism.film(drawn, 0.0, film_end - run.result["dt"], drawn.frames)
+    strip = "".join(f'<figure class="{mode}">{svg}{time:.2f} s</figure>' for time, mode, svg in frames)
     return (f'<h2>Motion</h2><div class="pictures"><figure>{mechanism.stroboscope(drawn, begin, end, poses)}'
             f'<figcaption class="note">{swing}: from {begin:.2f} s, one pose every {1e3 * every:.0f} ms, the later '
             f'the darker.</figcaption></figure><div><div class="film" style="--frame:{drawn.frame_width}px">{strip}</div>'
