@@ -21,9 +21,15 @@ void mct_clock_start(mct_clock *clock, double period)
     memset(clock, 0, sizeof *clock);
     clock->has_memory = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
     clock->has_priority = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
-    clock->period_ns = (int64_t)(period * 1e9 + 0.5);
-    clock->woke_ns = now_ns();
-    clock->deadline_ns = clock->woke_ns + clock->period_ns;
+    clock->period_ns = period * 1e9;
+    clock->start_ns = now_ns();
+    clock->woke_ns = clock->start_ns;
+    clock->tick = 1;
+}
+
+static int64_t deadline_ns(const mct_clock *clock)
+{
+    return clock->start_ns + (int64_t)((double)clock->tick * clock->period_ns + 0.5);
 }
 
 static uint32_t microseconds(int64_t ns)
@@ -53,18 +59,19 @@ void mct_clock_wait(mct_clock *clock)
     if (work_us > timing->worst_work_us) {
         timing->worst_work_us = work_us;
     }
-    if (done > clock->deadline_ns) {
-        const int64_t missed = (done - clock->deadline_ns) / clock->period_ns + 1;
-        timing->missed_ticks += (uint64_t)missed;
-        clock->deadline_ns += missed * clock->period_ns;
+    const int64_t late_ns = done - deadline_ns(clock);
+    if (late_ns > 0) {
+        const uint64_t missed = (uint64_t)((double)late_ns / clock->period_ns) + 1;
+        timing->missed_ticks += missed;
+        clock->tick += missed;
     }
-    const struct timespec deadline = {.tv_sec = clock->deadline_ns / 1000000000,
-                                      .tv_nsec = (long)(clock->deadline_ns % 1000000000)};
+    const int64_t due_ns = deadline_ns(clock);
+    const struct timespec deadline = {.tv_sec = due_ns / 1000000000, .tv_nsec = (long)(due_ns % 1000000000)};
     int status = EINTR;
     for (int tries = 0; status == EINTR && tries < 100; tries++) {
         status = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL);
     }
     clock->woke_ns = now_ns();
-    account(timing, clock->woke_ns - clock->deadline_ns);
-    clock->deadline_ns += clock->period_ns;
+    account(timing, clock->woke_ns - due_ns);
+    clock->tick++;
 }

@@ -11,8 +11,9 @@
 #include "hal/hal.h"
 
 typedef struct {
-    int64_t period_ns;
-    int64_t deadline_ns; /**< of the next tick */
+    double period_ns;
+    int64_t start_ns;
+    uint64_t tick;       /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up */
     int64_t woke_ns;     /**< when the present tick began */
     bool has_priority;   /**< SCHED_FIFO was granted */
     bool has_memory;     /**< mlockall was granted */

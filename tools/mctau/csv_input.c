@@ -189,9 +189,9 @@ mct_status csv_input_read(const char *path, const char *column, double **samples
     mct_message_clear(why);
     char *text = read_file(path, &length);
     if (text == NULL) {
-        const char *reason = strerror(errno);
-        refuse(&self, MCT_ERROR_IO, "the file of input.file cannot be read: ");
-        mct_message_add(why, reason);
+        mct_message_add(why, path);
+        mct_message_add(why, ": the file of input.file cannot be read: ");
+        mct_message_add(why, strerror(errno));
         return MCT_ERROR_IO;
     }
     need_memory(csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL) == 0 ? text : NULL);

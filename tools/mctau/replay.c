@@ -27,7 +27,7 @@ const verb verb_replay = {
     .exit_codes = "  0  equal, every bit of every tick\n"
                   "  1  different\n"
                   "  2  the log is not one of mctau's, or is damaged\n"
-                  "  3  the log could not be read\n",
+                  "  3  the log could not be read, or was cut; what it holds is equal\n",
     .run = run_verb,
 };
 
@@ -58,9 +58,6 @@ static void print_text(const char *log, const replay_result *result)
         printf("  recorded %24.17g  %a\n  replayed %24.17g  %a\n", result->recorded, result->recorded, result->replayed,
                result->replayed);
     }
-    if (result->truncated) {
-        printf("The log was cut: it lacks its end, and was replayed up to the last complete tick.\n");
-    }
 }
 
 /* The log knows its precision: the runner that has another one says so, and the next is asked. */
@@ -88,5 +85,12 @@ static int run_verb(const arguments *given)
     } else {
         print_text(given->operand, &result);
     }
-    return result.equal ? EXIT_WELL : EXIT_CHECK_FAILED;
+    if (!result.equal) {
+        return EXIT_CHECK_FAILED;
+    }
+    if (result.truncated) {
+        return say(EXIT_IO, "%s: the log was cut: found no end; all %" PRIu64 " ticks that it holds are equal", given->operand,
+                   result.ticks);
+    }
+    return EXIT_WELL;
 }

@@ -132,7 +132,7 @@ static int complain_about_files(const run_result *result, const run_options *run
 {
     int exit_code = 0;
     if (result->csv_errors > 0 || result->csv_errno != 0) {
-        exit_code = say(EXIT_IO, "%s: %llu rows are lost: %s; the run went on, the incomplete file is removed", run->csv,
+        exit_code = say(EXIT_IO, "%s: %llu rows are lost: %s; the run went on, no incomplete file is left", run->csv,
                         (unsigned long long)result->csv_errors, strerror(result->csv_errno));
     }
     if (result->log_errors > 0 || result->log_errno != 0) {
@@ -176,6 +176,9 @@ static int run_scene(const scene_file *file, const arguments *given)
     const bool as_json = arguments_value(given, "json") != NULL;
     if (csv_on_stdout && as_json) {
         return say(EXIT_USAGE, "--csv: found - (stdout) together with --json, which is there already; allowed a file");
+    }
+    if (asked.csv != NULL && asked.csv[0] == '\0') {
+        return say(EXIT_USAGE, "--csv: found an empty name; allowed a file, or - for stdout");
     }
     int exit_code = check_outputs(file, &asked);
     if (exit_code != 0) {

@@ -181,7 +181,9 @@ static void print_state(const run_report *report, FILE *file)
         if (is_angle) {
             const double turns = nearbyint(value * DEGREES / 360);
             fprintf(file, " %9.3f deg", value * DEGREES - 360 * turns);
-            fprintf(file, turns != 0 ? " and %.0f turns" : "", turns);
+            if (turns != 0) {
+                fprintf(file, " %+.0f turn%s", turns, fabs(turns) > 1 ? "s" : "");
+            }
         }
         fputc('\n', file);
     }

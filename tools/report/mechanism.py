@@ -51,12 +51,14 @@ class CartPole(Mechanism):
     def __init__(self, run):
         super().__init__(run)
         self.length = float(run.scene("parameters", "pole_length"))
-        positions = self.table["cart_position"]
         self.track = float(run.scene("controller", "track_half_length")) if run.controlled else None
-        reach = max(self.track or 0, max(positions), -min(positions)) + 0.25 * self.length
-        reach = max(reach, 0.7 * self.length)
-        height = 1.15 * self.length
-        self.box = (-reach, -height, 2 * reach, 2 * height)
+        step = max(1, len(run.time) // 2000)
+        tips = [self.tip(row) for row in range(0, len(run.time), step)]
+        margin = 0.12 * self.length
+        reach = max([abs(x) for x, _ in tips] + [abs(p) for p in self.table["cart_position"]] + [self.track or 0]) + margin
+        top = min(min(y for _, y in tips), -margin) - margin
+        bottom = max(max(y for _, y in tips), margin) + margin
+        self.box = (-reach, top, 2 * reach, bottom - top)
         self.unit = self.length
 
     def tip(self, row):
@@ -122,11 +124,11 @@ def film(mechanism, begin, end, frames):
 
 
 def interesting(run):
-    """(begin, end) of the stroboscope: the swing that ends upright, else the first swing."""
-    if run.caught_at is not None and run.caught_at > 0:
-        end = min(run.caught_at + 0.5 * (run.duration - run.caught_at), run.caught_at + 0.25)
-        turns = run.turning_points(0, run.caught_at - 0.3)
-        return (turns[-1] if turns else 0.0), end
+    """(begin, end) of the stroboscope: the swing that ended upright, else the first swing."""
+    caught = run.last_balance
+    if caught is not None and caught.begin > 0:
+        turns = run.turning_points(0, caught.begin - 0.3)
+        return (turns[-1] if turns else 0.0), min(caught.end, caught.begin + 0.25)
     turns = run.turning_points(0.05, run.duration)
     end = turns[0] if turns else min(run.duration, 2.0)
     return 0.0, max(end, min(run.duration, 0.5))

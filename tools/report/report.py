@@ -36,6 +36,9 @@ def lead(run):
         if result["upright_at"] is not None:
             said.append(f"Since {result['upright_at']:.2f} s it has stood within {run_data.UPRIGHT:g} degrees of upright, "
                         f"and in the last half of that time within {run.worst_degrees(settled(run)):.2f} degrees.")
+    elif run.controlled and run.last_balance is not None:
+        said.append(f"The {words(run.name)} balanced from {run.last_balance.begin:.2f} s to {run.last_balance.end:.2f} s, "
+                    "and not at the end.")
     elif run.controlled:
         nearest = min(abs(d) for d in run.degrees)
         said.append(f"In {run.duration:g} s the {words(run.name)} came to within {nearest:.1f} degrees of upright, "
@@ -50,6 +53,17 @@ def lead(run):
     if result["verdict"] == "diverged":
         said.append("The simulation left all bounds; the last sane state was kept.")
     return " ".join(said)
+
+
+def spoken(run):
+    """The same for a terminal, with the speed."""
+    verdict, _ = VERDICTS.get(run.result["verdict"], (run.result["verdict"], ""))
+    sentences = [f"{verdict}.", *lead(run).split(". ")]
+    sentences = [sentence if sentence.endswith(".") else sentence + "." for sentence in sentences]
+    ns = run.result["ns_per_tick"]
+    if not run.scene("scene", "realtime") and ns > 0:
+        sentences.append(f"A tick took {ns:.0f} ns, which is {1e9 * run.result['dt'] / ns:.0f} times real time.")
+    return "\n".join(f"  {sentence}" for sentence in sentences)
 
 
 def settled(run):
@@ -85,7 +99,7 @@ def pictures(run):
     begin, end = mechanism.interesting(run)
     poses = 16
     every = (end - begin) / (poses - 1)
-    swing = "The swing that was caught" if run.caught_at else "The first swing"
+    swing = "The swing that was caught" if run.last_balance else "The first swing"
     film_end = run.duration if run.caught_at is None else min(run.duration, run.caught_at * 1.12 + 0.2)
     frames = mechanism.film(drawn, 0.0, film_end - run.result["dt"], drawn.frames)
     strip = "".join(f'<figure class="{mode}">{svg}{time:.2f} s</figure>' for time, mode, svg in frames)
@@ -218,6 +232,7 @@ def arguments(argv):
     parser.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="as given to mctau run")
     parser.add_argument("--mctau", default=os.environ.get("MCTAU", str(ROOT / "build" / "host" / "mctau")), help="the command")
     parser.add_argument("-o", "--output", required=True, help="the page to write")
+    parser.add_argument("--say", action="store_true", help="say on stdout what happened, too")
     return parser.parse_args(argv)
 
 
@@ -230,6 +245,8 @@ def main(argv=None):
             pathlib.Path(given.output).write_text(text, encoding="utf-8")
         except OSError as error:
             raise run_data.Complaint(f"{given.output}: the page cannot be written: {error.strerror}", run_data.INPUT_OUTPUT) from None
+        if given.say:
+            print(spoken(run))
     except run_data.Complaint as complaint:
         print(f"report: {complaint}", file=sys.stderr)
         return complaint.code

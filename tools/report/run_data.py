@@ -185,8 +185,13 @@ class Run:
         self.is_varied = float(self.scene("variation", "spread") or 0) > 0
 
     @property
+    def last_balance(self):
+        """The last stretch of balancing; None when there is none."""
+        return next((span for span in reversed(self.modes) if span.mode == "balance"), None)
+
+    @property
     def caught_at(self):
-        """When the last stretch of balancing began; None when there is none."""
+        """When the balancing began that lasts to the end; None when it does not."""
         last = self.modes[-1]
         return last.begin if last.mode == "balance" else None
 

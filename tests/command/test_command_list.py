@@ -1,0 +1,52 @@
+"""mctau list: what there is, from the descriptors."""
+
+
+def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(result):
+    found = result("list")
+    assert [key for key in ("systems", "effects", "steppers", "controllers") if key not in found] == []
+    assert [system["name"] for system in found["systems"]] == ["cart_pole", "reaction_wheel"]
+    assert {stepper["name"]: stepper["order"] for stepper in found["steppers"]} == {
+        "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "expo": 4,
+    }  # fmt: skip
+    assert found["controllers"] == ["none", "swing_up_balance"]
+    assert [effect["name"] for effect in found["effects"]] == ["gravity", "viscous", "coulomb", "motor", "saturation"]
+
+
+def test_every_parameter_and_coordinate_has_unit_range_and_a_default_within(result):
+    for system in result("list")["systems"]:
+        rates = [coordinate["rate"] for coordinate in system["coordinates"]]
+        for field in system["parameters"] + system["coordinates"] + rates:
+            assert isinstance(field["unit"], str)
+            assert field["minimum"] <= field["default"] <= field["maximum"], field["name"]
+        assert all(parameter["doc"] for parameter in system["parameters"])
+
+
+def test_a_system_lists_the_steppers_that_suit_it(result):
+    steppers = {system["name"]: system["steppers"] for system in result("list")["systems"]}
+    assert "expo" in steppers["reaction_wheel"]
+    assert "expo" not in steppers["cart_pole"]
+
+
+def test_one_system_can_be_asked_for(result, mctau):
+    assert [system["name"] for system in result("list", "cart_pole")["systems"]] == ["cart_pole"]
+    assert "pole_length" in mctau("list", "cart_pole").stdout
+    assert "wheel" not in mctau("list", "cart_pole").stdout
+
+
+def test_an_unknown_system_is_refused_with_those_that_there_are(mctau):
+    done = mctau("list", "acrobot")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "acrobot" in done.stderr
+    assert "cart_pole, reaction_wheel" in done.stderr
+
+
+def test_every_default_of_a_scene_is_accepted_by_the_reader(result, mctau, scenes):
+    for table in result("list")["tables"]:
+        for key in table["keys"]:
+            if "default" not in key or table["name"] in ("input", "controller"):
+                continue
+            value = key["default"]
+            text = str(value).lower() if isinstance(value, bool) else f"{value}"
+            done = mctau("run", scenes / "cart_pole_free.toml", "--set", f"{table['name']}.{key['name']}={text}", "--json")
+            assert done.returncode == 0, done.stderr
