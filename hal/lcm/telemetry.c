@@ -40,8 +40,8 @@ static int64_t microseconds(const mct_telemetry *self, uint64_t tick)
 
 /* --- the log --- */
 
-/* The log has refused something. What is in the buffer may be on the disk in part: it is taken back to the last event that
- * is whole, and the log is closed. */
+/* The log has refused something. What is in the buffer may be on the disk in part: it is taken back to the
+ * last event that is whole, and the log is closed. */
 static void fail_log(mct_telemetry *self, int reason)
 {
     mct_telemetry_log *log = &self->log;
@@ -76,7 +76,8 @@ static void flush_log(mct_telemetry *self)
     log->waiting_records = 0;
 }
 
-/* The buffer is flushed here before it overflows, never by stdio: so it is known which events are whole on the disk. */
+/* The buffer is flushed here before it overflows, never by stdio: so it is known which events are whole on
+ * the disk. */
 static void write_log(mct_telemetry *self, const char *channel, int64_t utime, uint8_t *data, int length)
 {
     mct_telemetry_log *log = &self->log;
@@ -192,7 +193,7 @@ static void send_health(mct_telemetry *self, bool finished)
     }
     const int length = mctau_health_t_encode(data, 0, sizeof data, &message);
     publish(self, MCT_CHANNEL_HEALTH, data, length);
-    if ((self->health.messages - 1) % HEALTHS_PER_SCENE == 0) {
+    if (self->health.messages % HEALTHS_PER_SCENE == 0) {
         publish(self, MCT_CHANNEL_SCENE, self->scene_message, self->scene_length);
     }
     write_log(self, MCT_CHANNEL_HEALTH, message.utime, data, length);
@@ -276,8 +277,8 @@ static int start_thread(mct_telemetry *self)
 
 /* --- the scene --- */
 
-/* Splits off the overrides: the last lines that begin with the mark. The text is cut in place; returns their number, or -1
- * when they are too many. */
+/* Splits off the overrides: the last lines that begin with the mark. The text is cut in place; returns their
+ * number, or -1 when they are too many. */
 static int split_overrides(char *text, char *overrides[MCT_MAX_OVERRIDES])
 {
     const size_t mark = sizeof MCT_OVERRIDE_MARK - 1;
@@ -404,7 +405,8 @@ static bool read_url(const char *url, struct sockaddr_in *address)
     return inet_pton(AF_INET, text, &address->sin_addr) == 1 && IN_MULTICAST(ntohl(address->sin_addr.s_addr));
 }
 
-/* Whether there is a route to an address: connecting a datagram's socket sends nothing. LCM says so, too, but on stderr. */
+/* Whether there is a route to an address: connecting a datagram's socket sends nothing. LCM says so, too, but
+ * on stderr. */
 static int find_route(const struct sockaddr_in *address)
 {
     const int test = socket(AF_INET, SOCK_DGRAM, 0);
@@ -430,6 +432,7 @@ static mct_status open_lcm(mct_telemetry *self, const char *url, mct_message *wh
         explain(why, "no telemetry over the network: LCM cannot use ", url, reason);
         mct_message_add(why, reason == ENETUNREACH ? "; on one machine, 'ip route add 224.0.0.0/4 dev lo' gives a route" : "");
     }
+    publish(self, MCT_CHANNEL_SCENE, self->scene_message, self->scene_length); /* here LCM allocates, never again */
     return MCT_OK;
 }
 

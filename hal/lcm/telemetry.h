@@ -2,12 +2,13 @@
  * @file telemetry.h
  * Carries records from a loop's ring to LCM listeners and an event log, in a thread of its own.
  *
- * The loop never waits: what the ring cannot hold is dropped and counted (mct_ring.dropped), and each published tick says how
- * many were lost before it. A listener that is slow or absent costs the loop nothing. Times are simulated: tick * dt, so
- * a run in lockstep leaves the same log, byte for byte, each time.
+ * The loop never waits: what the ring cannot hold is dropped and counted (mct_ring.dropped), and each
+ * published tick says how many were lost before it. A listener that is slow or absent costs the loop nothing.
+ * Times are simulated: tick * dt, so a run in lockstep leaves the same log, byte for byte, each time.
  *
- * Messages are those of hal/lcm/types/: tick_t for each record, health_t ten times a second and at the end, scene_t at the start
- * (over the network every second, for those who come late). A build without LCM has no telemetry: MCTAU_HAVE_LCM is 0 there.
+ * Messages are those of hal/lcm/types/: tick_t for each record, health_t ten times a second and at the end,
+ * scene_t at the start (over the network every second, for those who come late). A build without LCM has no
+ * telemetry: MCTAU_HAVE_LCM is 0 there.
  */
 #ifndef MCTAU_HAL_LCM_TELEMETRY_H
 #define MCTAU_HAL_LCM_TELEMETRY_H
@@ -93,7 +94,8 @@ typedef struct mct_telemetry {
 } mct_telemetry;
 
 /**
- * Opens the targets, writes the scene and starts the thread, which takes signals of nobody and never runs in real time.
+ * Opens the targets, writes the scene and starts the thread, which takes signals of nobody and never runs in
+ * real time.
  * @param ring   zero-initialised, fed by a loop; must outlive the telemetry, as must `scene`
  * @param why    a sentence on an error; a warning on MCT_OK, else empty
  * @return MCT_OK; MCT_ERROR_IO when the log cannot be made; MCT_ERROR_ARGUMENT for a URL of a provider other than udpm (tcpq would wait
@@ -105,8 +107,8 @@ mct_status mct_telemetry_start(mct_telemetry *telemetry, mct_ring *ring, const m
                                const mct_telemetry_targets *targets, mct_message *why);
 
 /**
- * Drains the ring, ends the thread, flushes and closes. A log that cannot be flushed is counted as an error. Call it after a start
- * that was MCT_OK, when the loop has ended.
+ * Drains the ring, ends the thread, flushes and closes. A log that cannot be flushed is counted as an error.
+ * Call it after a start that was MCT_OK, when the loop has ended.
  */
 void mct_telemetry_stop(mct_telemetry *telemetry);
 

@@ -1,4 +1,5 @@
-/* The rules of tools/mctau/runner_replay.h: a replay proves equality, names the first difference, and believes no file. */
+/* The rules of tools/mctau/runner_replay.h: a replay proves equality, names the first difference, and
+ * believes no file. */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
@@ -182,7 +183,8 @@ typedef struct {
     size_t length;
 } span;
 
-/* Each bit of a tick's data belongs to a field, and to be wrong is to be named. In the order of tick_t.lcm. */
+/* Each bit of a tick's data belongs to a field, and to be wrong is to be named. In the order of tick_t.lcm.
+ * */
 static void test_any_bit_of_a_tick_that_is_flipped_is_named(void)
 {
     static const span spans[] = {
@@ -365,7 +367,8 @@ static uint32_t random_below(uint32_t bound)
     return (uint32_t)((random_state * UINT64_C(2685821657736338717)) >> 33) % bound;
 }
 
-/* Bytes changed anywhere, lengths among them: any answer will do, but for equality with all ticks when a tick was hit. */
+/* Bytes changed anywhere, lengths among them: any answer will do, but for equality with all ticks when a tick
+ * was hit. */
 static void test_a_damaged_log_is_never_believed_and_never_fatal(void)
 {
     static uint8_t good[1 << 16];

@@ -136,8 +136,9 @@ static int complain_about_files(const run_result *result, const run_options *run
                         (unsigned long long)result->csv_errors, strerror(result->csv_errno));
     }
     if (result->log_errors > 0 || result->log_errno != 0) {
-        exit_code = say(EXIT_IO, "%s: %llu records are not in the log: %s; the run went on", run->log,
-                        (unsigned long long)result->log_errors, strerror(result->log_errno));
+        exit_code = say(EXIT_IO, "%s: the log holds %llu of %llu ticks: %s; the run went on", run->log,
+                        (unsigned long long)result->logged, (unsigned long long)result->ticks,
+                        strerror(result->log_errno));
     }
     if (result->warning.text[0] != '\0') {
         say(0, "%s", result->warning.text);

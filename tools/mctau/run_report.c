@@ -115,6 +115,7 @@ void print_run_json(const run_report *report, FILE *file)
     json_text(&out, "verdict", verdict_name(report->verdict));
     json_time(&out, "upright_at", result->upright_at);
     json_time(&out, "worst_after_upright", result->upright_at >= 0 ? result->worst_after_upright : -1);
+    json_number(&out, "worst_last_second", result->stopped ? (double)NAN : result->worst_last_second);
     json_number(&out, "deviation", result->deviation);
     json_text(&out, "mode", result->mode);
     json_object(&out, "counters");
@@ -142,8 +143,8 @@ static void print_verdict(const run_report *report, FILE *file)
     const double time = time_of(report);
     switch (report->verdict) {
     case BALANCED:
-        fprintf(file, "Balanced: upright since %.3f s, never more than %.2f deg away from it since then.\n",
-                result->upright_at, result->worst_after_upright * DEGREES);
+        fprintf(file, "Balanced: upright (within 2 deg) since %.3f s; in the last second within %.3f deg.\n",
+                result->upright_at, result->worst_last_second * DEGREES);
         break;
     case NOT_BALANCED:
         if (result->upright_at >= 0) {
@@ -278,7 +279,7 @@ static void print_files(const run_report *report, FILE *file)
     }
     if (has_log) {
         fprintf(file, "  %s: %" PRIu64 " records", options->log, result->logged);
-        fprintf(file, result->log_errors > 0 ? ", %" PRIu64 " did not fit\n" : "\n", result->log_errors);
+        fprintf(file, result->log_errors > 0 ? ", %" PRIu64 " events did not fit\n" : "\n", result->log_errors);
     }
     if (has_lcm) {
         fprintf(file, "  %s: %" PRIu64 " records published, %" PRIu64 " errors\n", options->lcm, result->published,

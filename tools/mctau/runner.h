@@ -56,6 +56,7 @@ typedef struct {
     double least_deviation;      /* of the whole run [rad] */
     double upright_at;           /* [s] from then on within 2 degrees of upright to the end; negative when not */
     double worst_after_upright;  /* largest deviation since then [rad]; 0 when not upright */
+    double worst_last_second;    /* largest deviation of the last second [rad] */
     double ns_per_tick;          /* wall-clock time of the loop, per tick; without init, CSV and waiting for telemetry */
     double seconds;              /* the same in all [s] */
     bool stopped;                /* by run_options.stop */

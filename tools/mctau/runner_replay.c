@@ -1,9 +1,10 @@
 /*
- * A replay: the loop of the recorded scene, fed with the recorded readings, beside a simulation fed with what the loop writes.
- * Plant, sensors, estimate, voltage, mode and faults of each tick are compared with the record; of a run in real time its
- * lateness is not.
+ * A replay: the loop of the recorded scene, fed with the recorded readings, beside a simulation fed with what
+ * the loop writes. Plant, sensors, estimate, voltage, mode and faults of each tick are compared with the
+ * record; of a run in real time its lateness is not.
  *
- * The log is read here and not by LCM, whose reader cannot tell a log's end from damage, believes any length, and prints.
+ * The log is read here and not by LCM, whose reader cannot tell a log's end from damage, believes any length,
+ * and prints.
  */
 #include "runner_replay.h"
 
@@ -326,7 +327,8 @@ static bool has_tick_shape(const replay *self)
            big_endian_32(data + COUNTS_AT + 8) == (uint32_t)shape.estimates;
 }
 
-/* A HAL that fails, and a stop, come from outside: they are latched here as they were in the run. They leave no voltage. */
+/* A HAL that fails, and a stop, come from outside: they are latched here as they were in the run. They leave
+ * no voltage. */
 static void inject_faults(replay *self)
 {
     const uint32_t outside = 1u << MCT_FAULT_HAL | 1u << MCT_FAULT_STOPPED;
@@ -340,7 +342,8 @@ static void inject_faults(replay *self)
     }
 }
 
-/* A fault that was taken for one from outside, and that the next tick does not know: that tick was not as recorded. */
+/* A fault that was taken for one from outside, and that the next tick does not know: that tick was not as
+ * recorded. */
 static bool is_taken_back(const replay *self)
 {
     return (self->injected & ~(uint32_t)self->recorded.faults) != 0;

@@ -40,7 +40,8 @@ typedef struct {
     uint64_t ticks;         /* of the whole run */
     /* what the ticks have shown */
     int upright;            /* index of the angle that is 0 upright */
-    mct_real deviation, least_deviation, worst_deviation;
+    mct_real deviation, least_deviation, worst_deviation, worst_last_second;
+    uint64_t last_second;   /* tick at which it begins */
     uint64_t last_outside;  /* tick at whose end the angle was beyond UPRIGHT, `never` for none */
     mct_real limit;         /* of the input */
     uint64_t saturated_ticks;
@@ -97,6 +98,9 @@ static void track_deviation(run *self, uint64_t tick)
         self->worst_deviation = 0;
     } else if (deviation > self->worst_deviation) {
         self->worst_deviation = deviation;
+    }
+    if (tick >= self->last_second && deviation > self->worst_last_second) {
+        self->worst_last_second = deviation;
     }
     if (deviation < self->least_deviation) {
         self->least_deviation = deviation;
@@ -314,6 +318,7 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
     const run_options *options = self->options;
     self->ticks = (uint64_t)(scene->duration / scene->dt + 0.5);
     self->upright = system->upright_coordinate;
+    self->last_second = scene->duration > 1 ? (uint64_t)((scene->duration - 1) / scene->dt + 0.5) : 0;
     self->first_fault = never;
     self->last_outside = never;
     self->least_deviation = MCT_REAL_MAX;
@@ -436,6 +441,7 @@ static void fill_result(run *self, run_result *result)
     result->deviation = (double)self->deviation;
     result->least_deviation = (double)self->least_deviation;
     result->worst_after_upright = (double)self->worst_deviation;
+    result->worst_last_second = (double)self->worst_last_second;
     const uint64_t upright_tick = self->last_outside == never ? 0 : self->last_outside + 1;
     result->upright_at = self->last_outside == self->loop.tick ? -1 : (double)upright_tick * dt;
     mct_plant_evaluate(&self->sim.plant, &at);

@@ -191,7 +191,7 @@ def fault_table(run):
 def final_state(run):
     rows = "".join(f'<tr><td>{name}<td class="n">{run.result["state"][name]!r}<td class="n">{run.result["state_hex"][name]}'
                    for name in run.result["state"])
-    return ('<h2>State at the end</h2><p class="note">The same scene gives these bits on every machine.</p><div class="scroll"><table>'
+    return ('<h2>State at the end</h2><p class="note">The same scene gives the same bits again.</p><div class="scroll"><table>'
             f'<tr><th>state<th>SI units<th>bits{rows}</table></div>')
 
 

@@ -1,0 +1,111 @@
+/* The impulse of dry friction on two coordinates: the rule of src/effects/friction.h, on random cases. */
+#include <math.h>
+#include <stdio.h>
+
+#include "effects/friction.h"
+#include "support/random.h"
+#include "unity.h"
+
+enum { CASES = 100000 };
+
+void setUp(void) {
+}
+
+void tearDown(void) {
+}
+
+typedef struct {
+    mct_symmetric2 W;
+    mct_real v[2];
+    mct_real bound[2];
+    mct_real p[2];
+    double after[2];
+} impulse_case;
+
+static impulse_case draw(test_random *random) {
+    impulse_case self;
+    const double a = random_scale(random, 1e-2, 1e2);
+    const double b = random_scale(random, 1e-2, 1e2);
+    const double coupling = random_in(random, -0.99, 0.99); /* condition up to some 200, as a reaction wheel's */
+    self.W = (mct_symmetric2){(mct_real)a, (mct_real)(coupling * sqrt(a * b)), (mct_real)b};
+    for (int i = 0; i < 2; i++) {
+        self.v[i] = (mct_real)random_in(random, -1, 1);
+        self.bound[i] = random_bits(random) % 8 == 0 ? 0 : (mct_real)random_scale(random, 1e-4, 10);
+    }
+    mct_friction_impulse(self.W, self.v, self.bound, self.p);
+    const double W12 = (double)self.W.a12;
+    self.after[0] = (double)self.v[0] + (double)self.W.a11 * (double)self.p[0] + W12 * (double)self.p[1];
+    self.after[1] = (double)self.v[1] + W12 * (double)self.p[0] + (double)self.W.a22 * (double)self.p[1];
+    return self;
+}
+
+/* v'M v / 2, M = W^-1. */
+static double energy(const mct_symmetric2 *W, double v1, double v2) {
+    const double det = (double)W->a11 * (double)W->a22 - (double)W->a12 * (double)W->a12;
+    return 0.5 * ((double)W->a22 * v1 * v1 - 2 * (double)W->a12 * v1 * v2 + (double)W->a11 * v2 * v2) / det;
+}
+
+/*
+ * Either a coordinate rests, or it slides and the full bound acts against it. A velocity counts as zero below some
+ * roundings of the terms that it is the sum of, times the condition of W.
+ */
+static void test_a_coordinate_rests_or_slides_against_the_full_bound(void) {
+    test_random random = {7};
+    int resting[3] = {0, 0, 0};
+    for (int k = 0; k < CASES; k++) {
+        const impulse_case now = draw(&random);
+        const double W[2] = {(double)now.W.a11, (double)now.W.a22};
+        int rests = 0;
+        for (int i = 0; i < 2; i++) {
+            const double p = (double)now.p[i];
+            const double bound = (double)now.bound[i];
+            const double terms = fabs((double)now.v[i]) + W[i] * fabs(p) + fabs((double)now.W.a12 * (double)now.p[1 - i]);
+            const double zero = 1000 * (double)MCT_REAL_EPSILON * terms;
+            TEST_ASSERT_TRUE(fabs(p) <= bound);
+            if (now.after[i] > zero) {
+                TEST_ASSERT_TRUE(p == -bound);
+            } else if (now.after[i] < -zero) {
+                TEST_ASSERT_TRUE(p == bound);
+            } else {
+                rests++;
+            }
+        }
+        resting[rests]++;
+    }
+    printf("%d slide, %d rest in one coordinate, %d in both\n", resting[0], resting[1], resting[2]);
+    TEST_ASSERT_TRUE(resting[0] > CASES / 20 && resting[1] > CASES / 20 && resting[2] > CASES / 20);
+}
+
+static void test_friction_never_adds_energy(void) {
+    test_random random = {8};
+    for (int k = 0; k < CASES; k++) {
+        const impulse_case now = draw(&random);
+        const double before = energy(&now.W, (double)now.v[0], (double)now.v[1]);
+        const double after = energy(&now.W, now.after[0], now.after[1]);
+        TEST_ASSERT_TRUE(after <= before * (1 + 1000 * (double)MCT_REAL_EPSILON));
+    }
+}
+
+static void test_without_bounds_there_is_no_impulse_and_with_large_ones_all_comes_to_rest(void) {
+    test_random random = {9};
+    for (int k = 0; k < 1000; k++) {
+        impulse_case now = draw(&random);
+        const mct_real none[2] = {0, 0};
+        mct_friction_impulse(now.W, now.v, none, now.p);
+        TEST_ASSERT_TRUE(now.p[0] == 0 && now.p[1] == 0);
+        const mct_real large[2] = {MCT_R(1e9), MCT_R(1e9)};
+        mct_real dx[4] = {MCT_R(0.5), MCT_R(0.25), MCT_R(0.125), MCT_R(-0.125)};
+        mct_friction_correct(now.W, large, MCT_R(0.001), now.v, dx);
+        for (int i = 0; i < 2; i++) {
+            TEST_ASSERT_TRUE(dx[2 + i] == -now.v[i]); /* exactly */
+        }
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_a_coordinate_rests_or_slides_against_the_full_bound);
+    RUN_TEST(test_friction_never_adds_energy);
+    RUN_TEST(test_without_bounds_there_is_no_impulse_and_with_large_ones_all_comes_to_rest);
+    return UNITY_END();
+}
