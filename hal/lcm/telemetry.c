@@ -24,12 +24,12 @@
 #include "mctau_tick_t.h"
 
 enum {
-    TICK_SIZE = 128 + 24 * MCT_MAX_COORDINATES + 16 * MCT_MAX_STATES, /* bytes of an encoded tick_t, at most */
+    TICK_SIZE = 128 + 24 * MCT_MAX_COORDINATES + 16 * MCT_MAX_STATES, /* bytes of a tick_t, at most */
     HEALTH_SIZE = 512 + 8 * (MCT_FAULT_COUNT + MCT_MODE_COUNT),
-    EVENT_HEADER = 28,            /* bytes of a log's event before its channel */
-    HEALTHS_PER_SCENE = 10,       /* the scene is repeated every second */
+    EVENT_HEADER = 28,      /* bytes of a log's event before its channel */
+    HEALTHS_PER_SCENE = 10, /* the scene is repeated every second */
     STACK_SIZE = 256 * 1024,
-    NAP_NS = 200000               /* while the ring is empty */
+    NAP_NS = 200000 /* while the ring is empty */
 };
 static const double health_period = 0.1; /* [s] */
 
@@ -81,8 +81,11 @@ static void flush_log(mct_telemetry *self)
 static void write_log(mct_telemetry *self, const char *channel, int64_t utime, uint8_t *data, int length)
 {
     mct_telemetry_log *log = &self->log;
-    lcm_eventlog_event_t event = {
-        .timestamp = utime, .channellen = (int32_t)strlen(channel), .datalen = length, .channel = (char *)channel, .data = data};
+    lcm_eventlog_event_t event = {.timestamp = utime,
+                                  .channellen = (int32_t)strlen(channel),
+                                  .datalen = length,
+                                  .channel = (char *)channel,
+                                  .data = data};
     const uint64_t bytes = EVENT_HEADER + (uint64_t)event.channellen + (uint64_t)length;
     if (!log->wanted) {
         return;
@@ -213,7 +216,8 @@ static void account(mct_telemetry_health *health, const mct_record *record)
     health->dropped = record->dropped;
     health->faults = record->faults;
     health->worst_late_us = record->late_us > health->worst_late_us ? record->late_us : health->worst_late_us;
-    for (uint32_t fault = 0, bits = record->faults; bits != 0 && fault < MCT_FAULT_COUNT; fault++, bits >>= 1) {
+    for (uint32_t fault = 0, bits = record->faults; bits != 0 && fault < MCT_FAULT_COUNT;
+         fault++, bits >>= 1) {
         health->fault_ticks[fault] += bits & 1;
     }
     if ((unsigned)record->mode < MCT_MODE_COUNT) {
@@ -223,7 +227,8 @@ static void account(mct_telemetry_health *health, const mct_record *record)
 
 static void drain(mct_telemetry *self)
 {
-    for (const mct_record *record = mct_ring_peek(self->ring); record != NULL; record = mct_ring_peek(self->ring)) {
+    for (const mct_record *record = mct_ring_peek(self->ring); record != NULL;
+         record = mct_ring_peek(self->ring)) {
         mct_telemetry_health *health = &self->health;
         send_tick(self, record);
         account(health, record);
@@ -240,7 +245,7 @@ static void *run(void *argument)
     mct_telemetry *self = argument;
     const struct timespec nap = {.tv_sec = 0, .tv_nsec = NAP_NS};
     for (bool last = false; !last;) {
-        last = __atomic_load_n(&self->stopping, __ATOMIC_ACQUIRE); /* first: what comes before it is drained */
+        last = __atomic_load_n(&self->stopping, __ATOMIC_ACQUIRE); /* first: then all is drained */
         drain(self);
         if (!last) {
             nanosleep(&nap, NULL);
@@ -423,16 +428,19 @@ static mct_status open_lcm(mct_telemetry *self, const char *url, mct_message *wh
     struct sockaddr_in address;
     if (!read_url(url, &address)) {
         explain(why, "telemetry.lcm: found ", url, 0);
-        mct_message_add(why, "; allowed udpm://ADDRESS:PORT?ttl=N with an address of 224.0.0.0 to 239.255.255.255");
+        mct_message_add(why, "; allowed udpm://ADDRESS:PORT?ttl=N, 224.0.0.0 to 239.255.255.255");
         return MCT_ERROR_ARGUMENT;
     }
     const int reason = find_route(&address);
     self->lcm = reason == 0 ? lcm_create(url) : NULL;
     if (self->lcm == NULL) {
         explain(why, "no telemetry over the network: LCM cannot use ", url, reason);
-        mct_message_add(why, reason == ENETUNREACH ? "; on one machine, 'ip route add 224.0.0.0/4 dev lo' gives a route" : "");
+        mct_message_add(why, reason == ENETUNREACH
+                                 ? "; on one machine, 'ip route add 224.0.0.0/4 dev lo' gives a route"
+                                 : "");
     }
-    publish(self, MCT_CHANNEL_SCENE, self->scene_message, self->scene_length); /* here LCM allocates, never again */
+    /* With its first message LCM allocates, and never again. */
+    publish(self, MCT_CHANNEL_SCENE, self->scene_message, self->scene_length);
     return MCT_OK;
 }
 

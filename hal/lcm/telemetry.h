@@ -36,10 +36,11 @@
 #define MCT_TELEMETRY_LOG_SIZE 65536   /**< buffer of the log [bytes]: 0.2 s at 1 kHz */
 
 typedef struct {
-    const char *url;            /**< LCM URL (udpm://...), or NULL or "" for none */
-    const char *log;            /**< path of the event log, or NULL or "" for none */
-    const char *scene_text;     /**< what a replay needs: the file's text, then a line MCT_OVERRIDE_MARK "table.key=value" for each override; NUL-terminated */
-    const mct_timing *timing;   /**< of the HAL, for the ticks that it missed; read while the loop runs. NULL: not told */
+    const char *url; /**< LCM URL (udpm://...), or NULL or "" for none */
+    const char *log; /**< path of the event log, or NULL or "" for none */
+    /** What a replay needs: the file's text, then a line MCT_OVERRIDE_MARK "table.key=value" an override. */
+    const char *scene_text;
+    const mct_timing *timing; /**< of the HAL, for the ticks it missed, read while the loop runs; or NULL */
 } mct_telemetry_targets;
 
 /** What became of the records; read it after mct_telemetry_stop. */
@@ -48,11 +49,11 @@ typedef struct {
     uint64_t published;      /**< handed to LCM */
     uint64_t publish_errors; /**< messages that LCM did not take */
     uint64_t logged;         /**< records that are in the log */
-    uint64_t log_errors;     /**< events (records, scene, health) that the log did not take: disk full, say; the run goes on */
+    uint64_t log_errors;     /**< events (records, scene, health) that the log did not take: disk full, say */
     int first_log_errno;     /**< reason of the first of them, 0 when none */
 } mct_telemetry_counts;
 
-/** The event log. It ends at its first error, cut back to the last event that is whole, so that it can be replayed. */
+/** The event log. It ends at its first error, cut back to the last whole event, fit for a replay. */
 typedef struct {
     void *file;                   /**< lcm_eventlog_t; NULL when there is none, or after an error */
     bool wanted;
@@ -98,10 +99,11 @@ typedef struct mct_telemetry {
  * real time.
  * @param ring   zero-initialised, fed by a loop; must outlive the telemetry, as must `scene`
  * @param why    a sentence on an error; a warning on MCT_OK, else empty
- * @return MCT_OK; MCT_ERROR_IO when the log cannot be made; MCT_ERROR_ARGUMENT for a URL of a provider other than udpm (tcpq would wait
- *         for its listeners); MCT_ERROR_BOUND for a scene text that is too long. A network that cannot be used (no route) is no error:
- *         `why` then holds a warning, MCT_OK is returned, and records go to the log alone. A disk that is full from the
- *         start is none either: it is counted. On an error no partial log is left behind.
+ * @return MCT_OK; MCT_ERROR_IO when the log cannot be made; MCT_ERROR_ARGUMENT for a URL of a provider other
+ *         than udpm (tcpq would wait for its listeners); MCT_ERROR_BOUND for a scene text that is too long. A
+ *         network that cannot be used (no route) is no error: `why` then holds a warning with MCT_OK, and
+ *         records go to the log alone. A disk that is full from the start is none either: it is counted.
+ *         On an error no partial log is left behind.
  */
 mct_status mct_telemetry_start(mct_telemetry *telemetry, mct_ring *ring, const mct_scene *scene,
                                const mct_telemetry_targets *targets, mct_message *why);

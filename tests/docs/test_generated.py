@@ -7,8 +7,12 @@ import sys
 
 
 def generate(source, build, *options):
-    return subprocess.run([sys.executable, source / "docs" / "generate", "--mctau", build / "mctau", *options],
-                          capture_output=True, text=True, timeout=120)
+    return subprocess.run(
+        [sys.executable, source / "docs" / "generate", "--mctau", build / "mctau", *options],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
 
 
 def test_every_generated_table_is_as_committed(source, build, mctau):

@@ -1,8 +1,7 @@
-"""What the README shows, works: its commands run, its program compiles, its scene is read, its files exist."""
+"""What the README shows, works: its commands, its program, its scene, the files that it names."""
 
 import json
 import os
-import pathlib
 import re
 import shlex
 import subprocess
@@ -34,13 +33,15 @@ def blocks(readme, language):
     found = []
     for match in BLOCK.finditer(readme):
         if match[1] == language:
-            reason = NOT_RUN.search(readme[:match.start()])
+            reason = NOT_RUN.search(readme[: match.start()])
             found.append((match[2], reason and reason[1]))
     assert found, f"the README has no block of {language}"
     return found
 
 
-@pytest.mark.skipif(bool(os.environ.get("MCTAU_SANITIZE")), reason="the README's command line links no sanitizer")
+@pytest.mark.skipif(
+    bool(os.environ.get("MCTAU_SANITIZE")), reason="the README's command line links no sanitizer"
+)
 def test_every_shell_command_of_the_readme_works(readme, clone, mctau):
     ran = 0
     for text, reason in blocks(readme, "sh"):
@@ -68,14 +69,19 @@ def test_the_program_of_the_readme_is_the_committed_one(readme, source):
 
 def test_the_scene_of_the_readme_balances(readme, mctau, tmp_path):
     scene = tmp_path / "scene.toml"
-    (text, _), = blocks(readme, "toml")
+    ((text, _),) = blocks(readme, "toml")
     scene.write_text(text)
     done = mctau("run", scene, "--json")
     assert done.returncode == 0 and json.loads(done.stdout)["verdict"] == "balanced", done.stderr
 
 
 def documents(source):
-    return [source / "README.md", source / "CHANGELOG.md", source / "CONTRIBUTING.md", *sorted((source / "docs").rglob("*.md"))]
+    return [
+        source / "README.md",
+        source / "CHANGELOG.md",
+        source / "CONTRIBUTING.md",
+        *sorted((source / "docs").rglob("*.md")),
+    ]
 
 
 def test_every_file_that_a_document_links_to_exists(source):

@@ -31,7 +31,8 @@ static const char swing_up_scene[] =
 static inline void log_path(char path[64], const char *name)
 {
     const char *folder = getenv("TMPDIR");
-    snprintf(path, 64, "%s/mctau_%ld_%s", folder != NULL && strlen(folder) < 30 ? folder : "/tmp", (long)getpid(), name);
+    snprintf(path, 64, "%s/mctau_%ld_%s", folder != NULL && strlen(folder) < 30 ? folder : "/tmp",
+             (long)getpid(), name);
 }
 
 static inline void logged_run_prepare(logged_run *run, const char *text, mct_samples samples)
@@ -42,7 +43,8 @@ static inline void logged_run_prepare(logged_run *run, const char *text, mct_sam
         run->status = mct_sim_init(&run->sim, &run->scene, &run->why);
     }
     if (run->status == MCT_OK) {
-        run->status = mct_loop_init(&run->loop, &run->scene, mct_sim_hal(&run->sim), &run->ring, samples, &run->why);
+        run->status =
+            mct_loop_init(&run->loop, &run->scene, mct_sim_hal(&run->sim), &run->ring, samples, &run->why);
     }
     if (run->status != MCT_OK) {
         printf("%s\n", run->why.text);
@@ -66,7 +68,8 @@ static inline void logged_run_tick(logged_run *run)
 }
 
 /* A whole run of so many ticks into a log. */
-static inline void logged_run_all(logged_run *run, const char *text, mct_samples samples, int ticks, const char *log)
+static inline void logged_run_all(logged_run *run, const char *text, mct_samples samples, int ticks,
+                                  const char *log)
 {
     const mct_telemetry_targets targets = {.log = log, .scene_text = text};
     logged_run_prepare(run, text, samples);

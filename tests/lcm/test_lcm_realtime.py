@@ -18,6 +18,7 @@ import sys
 import pytest
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
+LISTENER = (sys.executable, pathlib.Path(__file__).resolve())
 NETWORK = "ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec \"$@\""
 
 
@@ -67,8 +68,8 @@ pytest.importorskip("mctau.tick_t", reason="the build made no telemetry types fo
 
 
 def in_network(script, *arguments, setup=NETWORK, **options):
-    return subprocess.Popen(["unshare", "-rn", "sh", "-c", setup, "sh", "sh", "-c", script, "sh", *map(str, arguments)],
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+    command = ["unshare", "-rn", "sh", "-c", setup, "sh", "sh", "-c", script, "sh", *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -101,7 +102,7 @@ def finish(process, seconds):
         raise
 
 
-# One script, so that subscriber and run share the namespace. $1 python, $2 this file, $3 seconds, $4... what publishes.
+# One script, so that subscriber and run share the namespace. Python, this file, seconds, then what publishes.
 LISTENED = """
 python=$1; listener=$2; seconds=$3; shift 3
 "$python" "$listener" "$seconds" > "$TMP/heard" & pid=$!
@@ -115,14 +116,15 @@ exit $code
 
 def listened(tmp_path, seconds, *publisher):
     """(exit code, stdout of the publisher, what the subscriber heard)."""
-    with in_network(LISTENED, sys.executable, pathlib.Path(__file__).resolve(), seconds, *publisher,
+    with in_network(LISTENED, *LISTENER, seconds, *publisher,
                     env={**os.environ, "TMP": str(tmp_path)}) as process:
         output, heard = finish(process, seconds + 30)
     return process.returncode, output, json.loads(heard.splitlines()[-1])
 
 
 def test_ten_seconds_at_one_kilohertz_lose_nothing(command, scene, tmp_path):
-    code, output, heard = listened(tmp_path, 30, command, "run", scene, "--duration", "10", "--realtime", "--lcm", URL, "--json")
+    code, output, heard = listened(tmp_path, 30, command, "run", scene, "--duration", "10", "--realtime",
+                                   "--lcm", URL, "--json")
     assert code in (0, 1)
     assert json.loads(output)["ticks"] == 10000
     assert heard["ticks"] == list(range(10000))
@@ -147,8 +149,8 @@ exit $code
 def test_a_stopped_subscriber_changes_no_tick(mctau, command, scene, tmp_path, realtime):
     options = ["--duration", "3", "--json"]
     alone = mctau("run", scene, *options)
-    with in_network(STOPPED, sys.executable, pathlib.Path(__file__).resolve(), command, "run", scene, *options, "--lcm", URL,
-                    *(["--realtime"] if realtime else []), env={**os.environ, "TMP": str(tmp_path)}) as process:
+    run = [command, "run", scene, *options, "--lcm", URL, *(["--realtime"] if realtime else [])]
+    with in_network(STOPPED, *LISTENER, *run, env={**os.environ, "TMP": str(tmp_path)}) as process:
         output, errors = finish(process, 60)
     assert process.returncode == alone.returncode, errors
     result, expected = json.loads(output), json.loads(alone.stdout)
@@ -159,8 +161,8 @@ def test_a_stopped_subscriber_changes_no_tick(mctau, command, scene, tmp_path, r
 
 def test_without_a_route_the_run_goes_on_with_a_warning(command, scene, tmp_path):
     log = tmp_path / "run.lcm"
-    with in_network('exec "$@"', command, "run", scene, "--duration", "1", "--lcm", URL, "--log", log, "--json",
-                    setup='exec "$@"') as process:
+    run = [command, "run", scene, "--duration", "1", "--lcm", URL, "--log", log, "--json"]
+    with in_network('exec "$@"', *run, setup='exec "$@"') as process:
         output, errors = finish(process, 30)
     assert process.returncode in (0, 1), errors
     assert json.loads(output)["ticks"] == 1000
@@ -187,8 +189,8 @@ def test_a_subscriber_that_dies_is_no_loss(command, scene, tmp_path):
     (sleep 0.5; kill -KILL $pid) &
     exec "$@"
     """
-    with in_network(script, sys.executable, pathlib.Path(__file__).resolve(), command, "run", scene, "--duration", "1", "--realtime",
-                    "--lcm", URL, "--json", env={**os.environ, "TMP": str(tmp_path)}) as process:
+    run = [command, "run", scene, "--duration", "1", "--realtime", "--lcm", URL, "--json"]
+    with in_network(script, *LISTENER, *run, env={**os.environ, "TMP": str(tmp_path)}) as process:
         output, errors = finish(process, 30)
     assert process.returncode in (0, 1), errors
     assert json.loads(output)["ticks"] == 1000

@@ -73,11 +73,14 @@ static void test_a_slow_consumer_gets_records_in_order_and_the_rest_is_counted(v
     const struct timespec pause = {.tv_nsec = 100000};
     TEST_ASSERT_EQUAL_INT(0, pthread_create(&producer, NULL, push_all, &run.ring));
     for (bool last = false; !last;) {
-        last = __atomic_load_n(&run.ring.head, __ATOMIC_ACQUIRE) + __atomic_load_n(&run.ring.dropped, __ATOMIC_ACQUIRE) == PUSHES;
-        for (const mct_record *record = mct_ring_peek(&run.ring); record != NULL; record = mct_ring_peek(&run.ring)) {
+        last = __atomic_load_n(&run.ring.head, __ATOMIC_ACQUIRE) +
+                   __atomic_load_n(&run.ring.dropped, __ATOMIC_ACQUIRE) ==
+               PUSHES;
+        for (const mct_record *record = mct_ring_peek(&run.ring); record != NULL;
+             record = mct_ring_peek(&run.ring)) {
             in_order &= record->tick >= next;
             whole &= record->plant.x[0] == (mct_real)(record->tick % 1000);
-            whole &= record->tick == taken + record->dropped; /* each record says how many were lost before it */
+            whole &= record->tick == taken + record->dropped; /* so many were lost before it */
             next = record->tick + 1;
             mct_ring_pop(&run.ring);
             if (++taken % 1000 == 0) {
@@ -113,7 +116,8 @@ enum { TICKS = 10007 };
 static void test_a_log_holds_scene_ticks_and_end_with_simulated_time(void)
 {
     static char text[4096];
-    snprintf(text, sizeof text, "%s# the end\n#!set scene.dt=0.0005\n#!set controller.capture=0.5\n", swing_up_scene);
+    snprintf(text, sizeof text, "%s# the end\n#!set scene.dt=0.0005\n#!set controller.capture=0.5\n",
+             swing_up_scene);
     logged_run_all(&run, text, (mct_samples){NULL, 0}, TICKS, path);
     TEST_ASSERT_EQUAL_INT(MCT_OK, run.status);
     TEST_ASSERT_TRUE(run.telemetry.counts.records == TICKS && run.telemetry.counts.logged == TICKS);
@@ -129,7 +133,8 @@ static void test_a_log_holds_scene_ticks_and_end_with_simulated_time(void)
         if (event->eventnum == 0) {
             mctau_scene_t scene;
             TEST_ASSERT_EQUAL_STRING(MCT_CHANNEL_SCENE, event->channel);
-            TEST_ASSERT_EQUAL_INT(event->datalen, mctau_scene_t_decode(event->data, 0, event->datalen, &scene));
+            TEST_ASSERT_EQUAL_INT(event->datalen,
+                                  mctau_scene_t_decode(event->data, 0, event->datalen, &scene));
             TEST_ASSERT_EQUAL_INT(2, scene.override_count);
             TEST_ASSERT_EQUAL_STRING("scene.dt=0.0005", scene.overrides[0]);
             TEST_ASSERT_EQUAL_STRING("controller.capture=0.5", scene.overrides[1]);
@@ -151,9 +156,11 @@ static void test_a_log_holds_scene_ticks_and_end_with_simulated_time(void)
         } else {
             mctau_health_t health;
             TEST_ASSERT_EQUAL_STRING(MCT_CHANNEL_HEALTH, event->channel);
-            TEST_ASSERT_EQUAL_INT(event->datalen, mctau_health_t_decode(event->data, 0, event->datalen, &health));
+            TEST_ASSERT_EQUAL_INT(event->datalen,
+                                  mctau_health_t_decode(event->data, 0, event->datalen, &health));
             TEST_ASSERT_TRUE(health.sequence == healths);
-            TEST_ASSERT_TRUE(health.records == ticks && health.lateness[0] == ticks && health.utime == event->timestamp);
+            TEST_ASSERT_TRUE(health.records == ticks && health.lateness[0] == ticks &&
+                             health.utime == event->timestamp);
             finished = health.finished;
             healths++;
             mctau_health_t_decode_cleanup(&health);
@@ -251,8 +258,9 @@ static void test_a_start_that_fails_leaves_no_log(void)
 
 static void test_urls_that_are_no_multicast_address_are_refused(void)
 {
-    static const char *const bad[] = {"udpm://somewhere", "udpm://10.0.0.1:7667", "udpm://239.255.76.67.1:7667", "udp://239.255.76.67",
-                                      "file:///tmp/x", "x"};
+    static const char *const bad[] = {
+        "udpm://somewhere",    "udpm://10.0.0.1:7667", "udpm://239.255.76.67.1:7667",
+        "udp://239.255.76.67", "file:///tmp/x",        "x"};
     logged_run_prepare(&run, swing_up_scene, (mct_samples){NULL, 0});
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const mct_telemetry_targets targets = {.url = bad[i], .scene_text = swing_up_scene};

@@ -78,7 +78,8 @@ static size_t tick_data(uint64_t tick, size_t *length)
     for (size_t at = 0; at < size; at = event_end(at)) {
         const size_t channel = big_endian_32(bytes + at + 20);
         const size_t data = at + HEADER_SIZE + channel;
-        if (channel == strlen(MCT_CHANNEL_TICK) && memcmp(bytes + at + HEADER_SIZE, MCT_CHANNEL_TICK, channel) == 0 &&
+        if (channel == strlen(MCT_CHANNEL_TICK) &&
+            memcmp(bytes + at + HEADER_SIZE, MCT_CHANNEL_TICK, channel) == 0 &&
             big_endian_32(bytes + data + 28) == tick) { /* behind hash, time, sequence */
             *length = big_endian_32(bytes + at + 24);
             return data;
@@ -99,16 +100,20 @@ static void test_a_replay_of_a_swing_up_has_the_same_bits(void)
 static void test_a_replay_of_a_cart_pole_has_the_same_bits(void)
 {
     record("[scene]\nsystem = \"cart_pole\"\n[effects]\nmotor = \"quasi_static\"\ncoulomb = true\n"
-           "[initial]\npole_angle = 3.14\n[controller]\nkind = \"swing_up_balance\"\n[sensors]\nlatency = 1\nnoise = 1\n",
+           "[initial]\npole_angle = 3.14\n[controller]\nkind = \"swing_up_balance\"\n"
+           "[sensors]\nlatency = 1\nnoise = 1\n",
            6000);
     expect_equal(6000);
 }
 
 static void test_a_replay_of_free_motion_and_of_a_sine_has_the_same_bits(void)
 {
-    record("[scene]\nsystem = \"cart_pole\"\n[effects]\nmotor = \"off\"\n[initial]\npole_angle = 2\npole_rate = 30\n", 3000);
+    record("[scene]\nsystem = \"cart_pole\"\n[effects]\nmotor = \"off\"\n"
+           "[initial]\npole_angle = 2\npole_rate = 30\n",
+           3000);
     expect_equal(3000);
-    record("[scene]\nsystem = \"reaction_wheel\"\n[input]\nkind = \"sine\"\namplitude = 5\nfrequency = 7\n", 3000);
+    record("[scene]\nsystem = \"reaction_wheel\"\n[input]\nkind = \"sine\"\namplitude = 5\nfrequency = 7\n",
+           3000);
     expect_equal(3000);
 }
 
@@ -119,10 +124,11 @@ static void test_a_csv_input_is_taken_from_the_log(void)
     for (int i = 0; i < TICKS / 2; i++) {
         samples[i] = 6.0 * ((i / 100) % 2) - 3.1;
     }
-    logged_run_all(&run,
-                   "[scene]\nsystem = \"cart_pole\"\n[effects]\nmotor = \"quasi_static\"\n[input]\nkind = \"csv\"\n"
-                   "file = \"gone.csv\"\ncolumn = \"u\"\n",
-                   (mct_samples){samples, TICKS / 2}, TICKS, path);
+    logged_run_all(
+        &run,
+        "[scene]\nsystem = \"cart_pole\"\n[effects]\nmotor = \"quasi_static\"\n[input]\nkind = \"csv\"\n"
+        "file = \"gone.csv\"\ncolumn = \"u\"\n",
+        (mct_samples){samples, TICKS / 2}, TICKS, path);
     TEST_ASSERT_EQUAL_INT(MCT_OK, run.status);
     expect_equal(TICKS);
 }
@@ -133,9 +139,11 @@ static void test_overrides_are_part_of_the_log(void)
     const mct_telemetry_targets targets = {.log = path, .scene_text = text};
     const mct_override override = {"parameters.wheel_mass=0.25", "--set"};
     logged_run_prepare(&run, swing_up_scene, (mct_samples){NULL, 0});
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_scene_read(swing_up_scene, strlen(swing_up_scene), "scene", &override, 1, &run.scene, &why));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_scene_read(swing_up_scene, strlen(swing_up_scene), "scene", &override,
+                                                 1, &run.scene, &why));
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_sim_init(&run.sim, &run.scene, &why));
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&run.loop, &run.scene, mct_sim_hal(&run.sim), &run.ring, (mct_samples){NULL, 0}, &why));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&run.loop, &run.scene, mct_sim_hal(&run.sim), &run.ring,
+                                                (mct_samples){NULL, 0}, &why));
     snprintf(text, sizeof text, "%s#!set %s\n", swing_up_scene, override.assignment);
     logged_run_start(&run, &targets);
     for (int i = 0; i < 1000; i++) {
@@ -150,9 +158,11 @@ static void test_faults_of_sensors_are_replayed(void)
     static const char *const faults[] = {"nan", "silent", "frozen"};
     for (int i = 0; i < 3; i++) {
         char text[1024];
-        snprintf(text, sizeof text, "%sfault = \"%s\"\n", "[scene]\nsystem = \"reaction_wheel\"\n[effects]\nmotor = \"quasi_static\"\n"
-                 "[initial]\narm_angle = 3\n[controller]\nkind = \"swing_up_balance\"\n[sensors]\nfault_time = 0.3\n"
-                 "fault_duration = 0.5\n", faults[i]);
+        snprintf(text, sizeof text, "%sfault = \"%s\"\n",
+                 "[scene]\nsystem = \"reaction_wheel\"\n[effects]\nmotor = \"quasi_static\"\n"
+                 "[initial]\narm_angle = 3\n[controller]\nkind = \"swing_up_balance\"\n"
+                 "[sensors]\nfault_time = 0.3\nfault_duration = 0.5\n",
+                 faults[i]);
         record(text, 1500);
         expect_equal(1500);
         TEST_ASSERT_TRUE(run.loop.record.faults != 0 || i == 2); /* a motor at rest may well be frozen */
@@ -188,12 +198,35 @@ typedef struct {
 static void test_any_bit_of_a_tick_that_is_flipped_is_named(void)
 {
     static const span spans[] = {
-        {"utime", 8}, {"sequence", 8}, {"", 8 + 12}, {"counts.arm_angle", 4}, {"counts.wheel_angle", 4}, {"age_us", 8}, {"flags", 4},
-        {"estimate.arm_angle", 8}, {"estimate.wheel_angle", 8}, {"estimate.arm_rate", 8}, {"estimate.wheel_rate", 8}, {"wanted", 8},
-        {"applied", 8}, {"mode", 4}, {"faults", 4}, {"late_us", 8}, {"dropped", 8}, {"state.arm_angle", 8}, {"state.wheel_angle", 8},
-        {"state.arm_rate", 8}, {"state.wheel_rate", 8}, {"state.current", 8}, {"compensation.arm_angle", 8},
-        {"compensation.wheel_angle", 8}, {"compensation.arm_rate", 8}, {"compensation.wheel_rate", 8}, {"compensation.current", 8},
-        {"turns.arm_angle", 4}, {"turns.wheel_angle", 4},
+        {"utime", 8},
+        {"sequence", 8},
+        {"", 8 + 12},
+        {"counts.arm_angle", 4},
+        {"counts.wheel_angle", 4},
+        {"age_us", 8},
+        {"flags", 4},
+        {"estimate.arm_angle", 8},
+        {"estimate.wheel_angle", 8},
+        {"estimate.arm_rate", 8},
+        {"estimate.wheel_rate", 8},
+        {"wanted", 8},
+        {"applied", 8},
+        {"mode", 4},
+        {"faults", 4},
+        {"late_us", 8},
+        {"dropped", 8},
+        {"state.arm_angle", 8},
+        {"state.wheel_angle", 8},
+        {"state.arm_rate", 8},
+        {"state.wheel_rate", 8},
+        {"state.current", 8},
+        {"compensation.arm_angle", 8},
+        {"compensation.wheel_angle", 8},
+        {"compensation.arm_rate", 8},
+        {"compensation.wheel_rate", 8},
+        {"compensation.current", 8},
+        {"turns.arm_angle", 4},
+        {"turns.wheel_angle", 4},
     };
     enum { TICK = 37 };
     record(swing_up_scene, 50);

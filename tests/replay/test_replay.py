@@ -1,4 +1,4 @@
-"""`mctau replay`: equality proved, the first difference named, cut and foreign logs told apart; by its exit code and JSON."""
+"""`mctau replay`: equality proved, the first difference named, cut and foreign logs told apart."""
 
 import json
 import struct
@@ -35,9 +35,11 @@ def test_a_run_replays_to_the_same_bits(mctau, source, tmp_path, scene, precisio
 def test_overrides_and_a_csv_input_are_in_the_log(mctau, tmp_path):
     scene = tmp_path / "scene.toml"
     (tmp_path / "input.csv").write_text("volts\n" + "\n".join(str(5 - i % 11) for i in range(1500)) + "\n")
-    scene.write_text('[scene]\nsystem = "cart_pole"\n[input]\nkind = "csv"\nfile = "input.csv"\ncolumn = "volts"\n')
+    scene.write_text('[scene]\nsystem = "cart_pole"\n'
+                     '[input]\nkind = "csv"\nfile = "input.csv"\ncolumn = "volts"\n')
     log = tmp_path / "run.lcm"
-    record(mctau, log, scene, "--set", "initial.pole_angle=3.0", "--set", "parameters.pole_mass=0.2", "--dt", "0.002")
+    record(mctau, log, scene, "--set", "initial.pole_angle=3.0", "--set", "parameters.pole_mass=0.2",
+           "--dt", "0.002")
     scene.unlink()
     (tmp_path / "input.csv").unlink()
     code, result, _ = replayed(mctau, log)
@@ -77,7 +79,8 @@ def test_a_flipped_bit_is_named_by_tick_and_field(mctau, log):
     message = tick_t.decode(bytes(data[start:end]))
     assert message.tick == number
     changed = list(message.x)
-    changed[3] = struct.unpack(">d", (struct.unpack(">q", struct.pack(">d", changed[3]))[0] ^ 1).to_bytes(8, "big", signed=True))[0]
+    bits = struct.unpack(">Q", struct.pack(">d", changed[3]))[0] ^ 1
+    changed[3] = struct.unpack(">d", struct.pack(">Q", bits))[0]
     message.x = changed
     data[start:end] = message.encode()
     log.write_bytes(data)

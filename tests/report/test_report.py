@@ -1,4 +1,4 @@
-"""The report and the demo: one page that stands alone, for every kind of run; wrong input is refused in a sentence."""
+"""The report and the demo: one page that stands alone; wrong input is refused in a sentence."""
 
 import html.parser
 import json
@@ -46,29 +46,58 @@ def reported(source, build, mctau, tmp_path):
     """reported(scene, sets...) runs a scene and makes its report."""
 
     def make(scene, *overrides, change=lambda files: None, options=()):
-        files = types.SimpleNamespace(csv=tmp_path / "run.csv", json=tmp_path / "run.json", page=tmp_path / "report.html",
-                                      scene=source / "scenes" / scene)
+        files = types.SimpleNamespace(
+            csv=tmp_path / "run.csv",
+            json=tmp_path / "run.json",
+            page=tmp_path / "report.html",
+            scene=source / "scenes" / scene,
+        )
         sets = [part for override in overrides for part in ("--set", override)]
         run = mctau("run", files.scene, *sets, "--csv", files.csv, "--json")
         files.json.write_text(run.stdout)
         change(files)
-        done = subprocess.run([sys.executable, source / "tools/report/report.py", "--mctau", build / "mctau", "--csv", files.csv,
-                               "--json", files.json, "--scene", files.scene, *sets, *options, "-o", files.page],
-                              capture_output=True, text=True, timeout=60)
+        done = subprocess.run(
+            [
+                sys.executable,
+                source / "tools/report/report.py",
+                "--mctau",
+                build / "mctau",
+                "--csv",
+                files.csv,
+                "--json",
+                files.json,
+                "--scene",
+                files.scene,
+                *sets,
+                *options,
+                "-o",
+                files.page,
+            ],
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
         text = files.page.read_text() if files.page.exists() else ""
-        return types.SimpleNamespace(done=done, text=text, page=Page(text), run=json.loads(run.stdout) if run.stdout else None)
+        return types.SimpleNamespace(
+            done=done, text=text, page=Page(text), run=json.loads(run.stdout) if run.stdout else None
+        )
 
     return make
 
 
-SCENES = [("reaction_wheel.toml", ()), ("cart_pole.toml", ()), ("reaction_wheel_free.toml", ()), ("cart_pole_free.toml", ()),
-          ("cart_pole.toml", ("sensors.fault=nan", "sensors.fault_time=8")),
-          ("reaction_wheel.toml", ("scene.duration=1",)),
-          ("reaction_wheel.toml", ("scene.duration=0.002",)),
-          ("reaction_wheel.toml", ("variation.spread=0.1", "sensors.noise=1")),
-          ("cart_pole.toml", ("controller.kind=none", "input.kind=sine", "input.amplitude=5", "scene.duration=5")),
-          ("cart_pole_free.toml", ("input.kind=constant", "input.value=1", "scene.duration=2")),
-          ("cart_pole.toml", ("initial.pole_angle=0.05", "scene.duration=5", "effects.saturation=false"))]
+SCENES = [
+    ("reaction_wheel.toml", ()),
+    ("cart_pole.toml", ()),
+    ("reaction_wheel_free.toml", ()),
+    ("cart_pole_free.toml", ()),
+    ("cart_pole.toml", ("sensors.fault=nan", "sensors.fault_time=8")),
+    ("reaction_wheel.toml", ("scene.duration=1",)),
+    ("reaction_wheel.toml", ("scene.duration=0.002",)),
+    ("reaction_wheel.toml", ("variation.spread=0.1", "sensors.noise=1")),
+    ("cart_pole.toml", ("controller.kind=none", "input.kind=sine", "input.amplitude=5", "scene.duration=5")),
+    ("cart_pole_free.toml", ("input.kind=constant", "input.value=1", "scene.duration=2")),
+    ("cart_pole.toml", ("initial.pole_angle=0.05", "scene.duration=5", "effects.saturation=false")),
+]
 
 
 @pytest.mark.parametrize("scene,overrides", SCENES)
@@ -101,8 +130,13 @@ def test_the_energy_is_that_of_the_core(reported, source, build, mctau, tmp_path
         sys.path.pop(0)
     for scene in ("cart_pole_free.toml", "reaction_wheel_free.toml", "reaction_wheel.toml"):
         made = reported(scene)
-        run = run_data.Run(tmp_path / "run.csv", tmp_path / "run.json", source / "scenes" / scene, [],
-                           run_data.Command(str(build / "mctau")))
+        run = run_data.Run(
+            tmp_path / "run.csv",
+            tmp_path / "run.json",
+            source / "scenes" / scene,
+            [],
+            run_data.Command(str(build / "mctau")),
+        )
         # 1e-12 J: rounding of energies below 1 J, in two orders of summation
         assert run.energy[0] == pytest.approx(made.run["energy_start"], abs=1e-12)
 
@@ -127,20 +161,23 @@ def not_a_number(files):
     files.csv.write_text(re.sub(r"^0\.001,", "nan,", files.csv.read_text(), flags=re.MULTILINE))
 
 
-@pytest.mark.parametrize("change,code,says", [
-    (lambda files: files.csv.unlink(), 3, "cannot be read"),
-    (lambda files: files.csv.write_text(""), 2, "no column time"),
-    (drop_rows, 2, "both must be of the same run"),
-    (cut_row, 2, "the file has been cut"),
-    (drop_header, 2, "no column time"),
-    (spoil_number, 2, "allowed a number"),
-    (not_a_number, 2, "allowed a finite number"),
-    (lambda files: files.json.write_text("{"), 2, "not JSON"),
-    (lambda files: files.json.write_text("[]"), 2, "mctau.run/1"),
-    (lambda files: files.json.write_text('{"schema": "other/1"}'), 2, "other/1"),
-    (lambda files: setattr(files, "scene", files.scene.with_name("cart_pole.toml")), 2, "another system"),
-    (lambda files: setattr(files, "page", files.page / "no" / "folder.html"), 3, "cannot be written"),
-])
+@pytest.mark.parametrize(
+    "change,code,says",
+    [
+        (lambda files: files.csv.unlink(), 3, "cannot be read"),
+        (lambda files: files.csv.write_text(""), 2, "no column time"),
+        (drop_rows, 2, "both must be of the same run"),
+        (cut_row, 2, "the file has been cut"),
+        (drop_header, 2, "no column time"),
+        (spoil_number, 2, "allowed a number"),
+        (not_a_number, 2, "allowed a finite number"),
+        (lambda files: files.json.write_text("{"), 2, "not JSON"),
+        (lambda files: files.json.write_text("[]"), 2, "mctau.run/1"),
+        (lambda files: files.json.write_text('{"schema": "other/1"}'), 2, "other/1"),
+        (lambda files: setattr(files, "scene", files.scene.with_name("cart_pole.toml")), 2, "another system"),
+        (lambda files: setattr(files, "page", files.page / "no" / "folder.html"), 3, "cannot be written"),
+    ],
+)
 def test_wrong_input_is_refused_in_a_sentence(reported, change, code, says):
     made = reported("reaction_wheel_free.toml", change=change)
     assert made.done.returncode == code, made.done.stderr
@@ -151,8 +188,14 @@ def test_wrong_input_is_refused_in_a_sentence(reported, change, code, says):
 @pytest.fixture
 def demo(source, build, mctau, tmp_path):
     def run(*arguments):
-        return subprocess.run([source / "tools/demo", "--out", tmp_path, *arguments], capture_output=True, text=True, timeout=120,
-                              env=os.environ | {"MCTAU": str(build / "mctau")})
+        return subprocess.run(
+            [source / "tools/demo", "--out", tmp_path, *arguments],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            env=os.environ | {"MCTAU": str(build / "mctau")},
+        )
+
     return run
 
 
@@ -170,7 +213,9 @@ def test_the_demo_balances_and_its_advice_works(demo, source, tmp_path):
 
 def test_the_demo_ends_with_the_verdict_of_the_run(demo, tmp_path, source):
     short = tmp_path / "short.toml"
-    short.write_text((source / "scenes/cart_pole.toml").read_text().replace("duration = 30.0", "duration = 1.0"))
+    short.write_text(
+        (source / "scenes/cart_pole.toml").read_text().replace("duration = 30.0", "duration = 1.0")
+    )
     assert demo(short).returncode == 1
     assert demo("scenes/cart_pole_free.toml").returncode == 0
 

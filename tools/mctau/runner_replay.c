@@ -81,7 +81,8 @@ static event_state read_event(log_reader *self)
     }
     self->channel[channel_length] = '\0';
     const bool fits = self->length <= LONGEST_DATA;
-    if (fits ? fread(self->data, 1, self->length, self->file) != self->length : !skip(self->file, self->length)) {
+    if (fits ? fread(self->data, 1, self->length, self->file) != self->length
+             : !skip(self->file, self->length)) {
         return EVENT_CUT;
     }
     self->count++;
@@ -170,7 +171,7 @@ typedef struct {
     mct_reading sensed;    /* the simulation's */
     double wanted;         /* its input asked for, for inputs of kind csv */
     mct_timing timing;
-    uint32_t injected;     /* faults from outside that were latched at the last tick, see inject_faults */
+    uint32_t injected; /* faults from outside that were latched at the last tick, see inject_faults */
 } replay;
 
 /* --- a HAL that gives the recorded readings --- */
@@ -251,7 +252,8 @@ static void differ(replay *self, const char *field, const char *part, double rec
     snprintf(result->field, sizeof result->field, "%s%s%s", field, part[0] != '\0' ? "." : "", part);
 }
 
-static void compare_integer(replay *self, const char *field, const char *part, int64_t recorded, int64_t replayed)
+static void compare_integer(replay *self, const char *field, const char *part, int64_t recorded,
+                            int64_t replayed)
 {
     if (recorded != replayed) {
         differ(self, field, part, (double)recorded, (double)replayed);
@@ -267,7 +269,8 @@ static void compare_real(replay *self, const char *field, const char *part, doub
     }
 }
 
-static void compare_reals(replay *self, const char *field, int count, const double *recorded, const mct_real *replayed)
+static void compare_reals(replay *self, const char *field, int count, const double *recorded,
+                          const mct_real *replayed)
 {
     const mct_system *system = mct_systems[self->scene.system];
     for (int i = 0; i < count; i++) {
@@ -275,7 +278,8 @@ static void compare_reals(replay *self, const char *field, int count, const doub
     }
 }
 
-static void compare_integers(replay *self, const char *field, int count, const int32_t *recorded, const int32_t *replayed)
+static void compare_integers(replay *self, const char *field, int count, const int32_t *recorded,
+                             const int32_t *replayed)
 {
     const mct_system *system = mct_systems[self->scene.system];
     for (int i = 0; i < count; i++) {
@@ -289,7 +293,8 @@ static void compare_tick(replay *self)
     const mctau_tick_t *recorded = &self->recorded;
     const mct_record *record = &self->loop.record;
     const int coordinates = recorded->coordinates;
-    compare_integer(self, "utime", "", recorded->utime, (int64_t)((double)record->tick * self->scene.dt * 1e6 + 0.5));
+    compare_integer(self, "utime", "", recorded->utime,
+                    (int64_t)((double)record->tick * self->scene.dt * 1e6 + 0.5));
     compare_integer(self, "sequence", "", recorded->sequence, (int64_t)record->tick);
     compare_reals(self, "state", recorded->states, recorded->x, record->plant.x);
     compare_reals(self, "compensation", recorded->states, recorded->c, record->plant.c);
@@ -447,7 +452,8 @@ static mct_status read_scene(replay *self)
     }
     const mct_status status = check_precision(self, precision);
     return status != MCT_OK ? status
-                            : mct_scene_read(text, strlen(text), self->log.path, overrides, (int)count, &self->scene, self->why);
+                            : mct_scene_read(text, strlen(text), self->log.path, overrides, (int)count,
+                                             &self->scene, self->why);
 }
 
 static mct_status prepare(replay *self)
@@ -505,9 +511,10 @@ static mct_status find_scene(replay *self)
         return say_damaged(&self->log, self->why);
     }
     begin_sentence(&self->log, self->why);
-    mct_message_add(self->why, empty               ? "the log is empty"
+    mct_message_add(self->why, empty                ? "the log is empty"
                                : state == EVENT_CUT ? "the log ends before its scene is complete"
-                                                    : "the log holds no scene (channel " MCT_CHANNEL_SCENE "); was it made by mctau?");
+                                                    : "the log holds no scene (channel " MCT_CHANNEL_SCENE
+                                                      "); was it made by mctau?");
     return MCT_ERROR_IO;
 }
 

@@ -12,7 +12,7 @@
  * went. `truncated` is set, too, when the log lacks the message that ends it. Else a sentence in `why`, and
  *   MCT_ERROR_IO        the file cannot be read, or holds no complete scene, or ticks are missing in it
  *   MCT_ERROR_SYNTAX    it is no event log, or an event in it is damaged
- *   MCT_ERROR_UNSUITED  it was recorded in another precision (the runner of that one can replay it) or by another version
+ *   MCT_ERROR_UNSUITED  it was recorded in another precision (its runner can replay it) or by another version
  *   or what reading its scene gives.
  * result->ticks counts the ticks that were compared, also then.
  */

@@ -39,9 +39,11 @@ class ReactionWheel(Mechanism):
         spoke = self.table["arm_angle"][row] + self.table["wheel_angle"][row]
         r = 0.78 * self.wheel
         sx, sy = r * math.sin(spoke), -r * math.cos(spoke)
-        return (f'<g class="pose {kind}"><path class="rod" d="M0 0L{x:.4f} {y:.4f}"/>'
-                f'<circle class="wheel" cx="{x:.4f}" cy="{y:.4f}" r="{self.wheel:.4f}"/>'
-                f'<path class="spoke" d="M{x - sx:.4f} {y - sy:.4f}L{x + sx:.4f} {y + sy:.4f}"/></g>')
+        return (
+            f'<g class="pose {kind}"><path class="rod" d="M0 0L{x:.4f} {y:.4f}"/>'
+            f'<circle class="wheel" cx="{x:.4f}" cy="{y:.4f}" r="{self.wheel:.4f}"/>'
+            f'<path class="spoke" d="M{x - sx:.4f} {y - sy:.4f}L{x + sx:.4f} {y + sy:.4f}"/></g>'
+        )
 
 
 class CartPole(Mechanism):
@@ -55,7 +57,10 @@ class CartPole(Mechanism):
         step = max(1, len(run.time) // 2000)
         tips = [self.tip(row) for row in range(0, len(run.time), step)]
         margin = 0.12 * self.length
-        reach = max([abs(x) for x, _ in tips] + [abs(p) for p in self.table["cart_position"]] + [self.track or 0]) + margin
+        reach = (
+            max([abs(x) for x, _ in tips] + [abs(p) for p in self.table["cart_position"]] + [self.track or 0])
+            + margin
+        )
         top = min(min(y for _, y in tips), -margin) - margin
         bottom = max(max(y for _, y in tips), margin) + margin
         self.box = (-reach, top, 2 * reach, bottom - top)
@@ -63,7 +68,9 @@ class CartPole(Mechanism):
 
     def tip(self, row):
         angle = self.table["pole_angle"][row]
-        return self.table["cart_position"][row] + self.length * math.sin(angle), -self.length * math.cos(angle)
+        return self.table["cart_position"][row] + self.length * math.sin(angle), -self.length * math.cos(
+            angle
+        )
 
     def still(self):
         left, _, width, _ = self.box
@@ -71,15 +78,20 @@ class CartPole(Mechanism):
         if self.track is None:
             return rail
         stop = 0.1 * self.length
-        return rail + "".join(f'<path class="stop" d="M{x:.4f} {-stop:.4f}V{stop:.4f}"/>' for x in (-self.track, self.track))
+        return rail + "".join(
+            f'<path class="stop" d="M{x:.4f} {-stop:.4f}V{stop:.4f}"/>' for x in (-self.track, self.track)
+        )
 
     def pose(self, row, kind=""):
         p = self.table["cart_position"][row]
         x, y = self.tip(row)
         w, h = 0.15 * self.length, 0.08 * self.length
-        return (f'<g class="pose {kind}"><rect class="cart" x="{p - w:.4f}" y="{-h:.4f}" width="{2 * w:.4f}" height="{2 * h:.4f}"/>'
-                f'<path class="rod" d="M{p:.4f} 0L{x:.4f} {y:.4f}"/>'
-                f'<circle class="bob" cx="{x:.4f}" cy="{y:.4f}" r="{0.065 * self.length:.4f}"/></g>')
+        return (
+            f'<g class="pose {kind}"><rect class="cart" x="{p - w:.4f}" y="{-h:.4f}" '
+            f'width="{2 * w:.4f}" height="{2 * h:.4f}"/>'
+            f'<path class="rod" d="M{p:.4f} 0L{x:.4f} {y:.4f}"/>'
+            f'<circle class="bob" cx="{x:.4f}" cy="{y:.4f}" r="{0.065 * self.length:.4f}"/></g>'
+        )
 
 
 def of(run):
@@ -88,8 +100,11 @@ def of(run):
 
 def drawing(mechanism, body, label, extra=""):
     left, top, width, height = mechanism.box
-    return (f'<svg class="mechanism" {extra}role="img" aria-label="{label}" viewBox="{left:.4f} {top:.4f} {width:.4f} {height:.4f}" '
-            f'style="--m:{mechanism.unit:.4f}">{mechanism.still()}{body}</svg>')
+    return (
+        f'<svg class="mechanism" {extra}role="img" aria-label="{label}" viewBox="{left:.4f} {top:.4f} '
+        f'{width:.4f} {height:.4f}" '
+        f'style="--m:{mechanism.unit:.4f}">{mechanism.still()}{body}</svg>'
+    )
 
 
 def path_of_tip(mechanism, begin, end):
@@ -105,7 +120,7 @@ def stroboscope(mechanism, begin, end, poses):
     for i in range(poses):
         share = i / (poses - 1)
         row = mechanism.run.at(begin + share * (end - begin))
-        opacity = 0.10 + 0.90 * share ** 2
+        opacity = 0.10 + 0.90 * share**2
         parts.append(f'<g opacity="{opacity:.2f}">{mechanism.pose(row)}</g>')
     return drawing(mechanism, "".join(parts), "poses at equal times, the later the darker")
 
@@ -118,8 +133,13 @@ def film(mechanism, begin, end, frames):
         time = begin + i * (end - begin) / (frames - 1)
         row = run.at(time)
         trail = path_of_tip(mechanism, max(begin, time - 0.5), time)
-        pictures.append((time, run.table["mode"][row],
-                         drawing(mechanism, trail + mechanism.pose(row), f"pose at {time:.2f} s")))
+        pictures.append(
+            (
+                time,
+                run.table["mode"][row],
+                drawing(mechanism, trail + mechanism.pose(row), f"pose at {time:.2f} s"),
+            )
+        )
     return pictures
 
 

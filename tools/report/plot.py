@@ -1,4 +1,4 @@
-"""Plots as HTML: lines and bands are an SVG that stretches, all text is HTML, so that it stays readable on a phone.
+"""Plots as HTML: lines and bands are an SVG that stretches; all text is HTML and stays readable on a phone.
 
 Colours are CSS classes alone (page.css): the same plot serves light and dark.
 """
@@ -7,7 +7,7 @@ import html
 import math
 
 WIDTH, HEIGHT = 1000, 240  # of the drawing, stretched to what the page gives
-COLUMNS = 900              # of decimation: each keeps its smallest and its largest value
+COLUMNS = 900  # of decimation: each keeps its smallest and its largest value
 
 
 def ticks(low, high, wanted=4):
@@ -104,8 +104,13 @@ class Plot:
             if i == len(times) or (wraps is not None and abs(values[i] - values[i - 1]) > wraps):
                 columns = max(2, round(COLUMNS * (i - start) / max(1, len(times))))
                 piece_begin, piece_end = times[start], times[i - 1]
-                points = decimated(times[start:i], values[start:i], piece_begin,
-                                   piece_end + 1e-12 + (piece_end - piece_begin) * 1e-9, columns)
+                points = decimated(
+                    times[start:i],
+                    values[start:i],
+                    piece_begin,
+                    piece_end + 1e-12 + (piece_end - piece_begin) * 1e-9,
+                    columns,
+                )
                 strokes.append("M" + "L".join(f"{self.x(t):.1f} {self.y(v):.1f}" for t, v in points))
                 start = i
         return "".join(strokes)
@@ -115,8 +120,10 @@ class Plot:
         for span in self.spans:
             left, right = self.x(max(span.begin, self.begin)), self.x(min(span.end, self.end))
             if right > left:
-                parts.append(f'<rect class="mode {span.mode}" x="{left:.1f}" width="{right - left:.1f}" '
-                             f'y="0" height="{HEIGHT}"/>')
+                parts.append(
+                    f'<rect class="mode {span.mode}" x="{left:.1f}" width="{right - left:.1f}" '
+                    f'y="0" height="{HEIGHT}"/>'
+                )
         for value in self.x_ticks:
             parts.append(f'<path class="grid" d="M{self.x(value):.1f} 0V{HEIGHT}"/>')
         for value in self.y_ticks:
@@ -124,8 +131,10 @@ class Plot:
             parts.append(f'<path class="{kind}" d="M0 {self.y(value):.1f}H{WIDTH}"/>')
         for low, high, kind, _ in self.bands:
             top, bottom = max(self.y(high), 0), min(self.y(low), HEIGHT)
-            parts.append(f'<rect class="band {kind}" x="0" width="{WIDTH}" y="{top:.1f}" '
-                         f'height="{max(bottom - top, 1.5):.1f}"/>')
+            parts.append(
+                f'<rect class="band {kind}" x="0" width="{WIDTH}" y="{top:.1f}" '
+                f'height="{max(bottom - top, 1.5):.1f}"/>'
+            )
         for value, kind, _ in self.levels:
             if self.low <= value <= self.high:
                 parts.append(f'<path class="level {kind}" d="M0 {self.y(value):.1f}H{WIDTH}"/>')
@@ -140,23 +149,48 @@ class Plot:
     def _key(self):
         entries = [(kind, label, "line") for _, _, kind, label, _ in self.lines if label]
         entries += [(kind, label, "band") for _, _, kind, label in self.bands if label]
-        entries += [(kind, label, "level") for value, kind, label in self.levels
-                    if label and self.low <= value <= self.high]
+        entries += [
+            (kind, label, "level")
+            for value, kind, label in self.levels
+            if label and self.low <= value <= self.high
+        ]
         seen = dict.fromkeys(entries)
-        return "".join(f'<span class="key"><i class="swatch {shape} {kind}"></i>{html.escape(label)}</span>'
-                       for kind, label, shape in seen)
+        return "".join(
+            f'<span class="key"><i class="swatch {shape} {kind}"></i>{html.escape(label)}</span>'
+            for kind, label, shape in seen
+        )
 
     def html(self, shows_time=True):
         self._range()
         self.x_ticks = ticks(self.begin, self.end, 6)
         self.y_ticks = (angle_ticks if self.is_angle else ticks)(self.low, self.high)
-        y_labels = "".join(f'<span style="top:{100 * self.y(v) / HEIGHT:.2f}%">{number(v)}</span>' for v in self.y_ticks)
-        x_labels = "".join(f'<span style="left:{100 * self.x(v) / WIDTH:.2f}%"{" class=odd" if i % 2 else ""}>{number(v)}</span>'
-                           for i, v in enumerate(self.x_ticks)) if shows_time else ""
-        marks = "".join(f'<b style="left:{100 * self.x(t) / WIDTH:.2f}%">{html.escape(name)}</b>'
-                        for t, name in self.marks if self.begin <= t <= self.end) if shows_time else ""
+        y_labels = "".join(
+            f'<span style="top:{100 * self.y(v) / HEIGHT:.2f}%">{number(v)}</span>' for v in self.y_ticks
+        )
+        x_labels = (
+            "".join(
+                f'<span style="left:{100 * self.x(v) / WIDTH:.2f}%"{" class=odd" if i % 2 else ""}>'
+                f'{number(v)}</span>'
+                for i, v in enumerate(self.x_ticks)
+            )
+            if shows_time
+            else ""
+        )
+        marks = (
+            "".join(
+                f'<b style="left:{100 * self.x(t) / WIDTH:.2f}%">{html.escape(name)}</b>'
+                for t, name in self.marks
+                if self.begin <= t <= self.end
+            )
+            if shows_time
+            else ""
+        )
         label = html.escape(f"{self.title} over time", quote=True)
-        return (f'<figure class="plot"><figcaption><b>{html.escape(self.title)}</b> <span class="unit">{html.escape(self.unit)}'
-                f'</span>{self._key()}</figcaption><div class="area"><svg role="img" aria-label="{label}" '
-                f'viewBox="0 0 {WIDTH} {HEIGHT}" preserveAspectRatio="none">{self._drawing()}</svg>'
-                f'<div class="y">{y_labels}</div><div class="x">{x_labels}</div><div class="marks">{marks}</div></div></figure>')
+        return (
+            f'<figure class="plot"><figcaption><b>{html.escape(self.title)}</b> <span class="unit">'
+            f'{html.escape(self.unit)}'
+            f'</span>{self._key()}</figcaption><div class="area"><svg role="img" aria-label="{label}" '
+            f'viewBox="0 0 {WIDTH} {HEIGHT}" preserveAspectRatio="none">{self._drawing()}</svg>'
+            f'<div class="y">{y_labels}</div><div class="x">{x_labels}</div><div class="marks">'
+            f'{marks}</div></div></figure>'
+        )

@@ -17,8 +17,14 @@ from plot import Plot
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-VERDICTS = {"balanced": ("Balanced", "good"), "not_balanced": ("Not balanced", "bad"), "faulted": ("Faulted", "bad"),
-            "diverged": ("Diverged", "bad"), "stopped": ("Stopped", "bad"), "finished": ("Finished", "")}
+VERDICTS = {
+    "balanced": ("Balanced", "good"),
+    "not_balanced": ("Not balanced", "bad"),
+    "faulted": ("Faulted", "bad"),
+    "diverged": ("Diverged", "bad"),
+    "stopped": ("Stopped", "bad"),
+    "finished": ("Finished", ""),
+}
 
 
 def words(name):
@@ -34,15 +40,23 @@ def lead(run):
         else:
             said.append(f"Balancing began at {run.caught_at:.2f} s.")
         if result["upright_at"] is not None:
-            said.append(f"Since {result['upright_at']:.2f} s it has stood within {run_data.UPRIGHT:g} degrees of upright, "
-                        f"and in the last half of that time within {run.worst_degrees(settled(run)):.2f} degrees.")
+            said.append(
+                f"Since {result['upright_at']:.2f} s it has stood within {run_data.UPRIGHT:g} degrees "
+                "of upright, "
+                f"and in the last half of that time within {run.worst_degrees(settled(run)):.2f} degrees."
+            )
     elif run.controlled and run.last_balance is not None:
-        said.append(f"The {words(run.name)} balanced from {run.last_balance.begin:.2f} s to {run.last_balance.end:.2f} s, "
-                    "and not at the end.")
+        said.append(
+            f"The {words(run.name)} balanced from {run.last_balance.begin:.2f} s to "
+            f"{run.last_balance.end:.2f} s, "
+            "and not at the end."
+        )
     elif run.controlled:
         nearest = min(abs(d) for d in run.degrees)
-        said.append(f"In {run.duration:g} s the {words(run.name)} came to within {nearest:.1f} degrees of upright, "
-                    "but was not balancing at the end.")
+        said.append(
+            f"In {run.duration:g} s the {words(run.name)} came to within {nearest:.1f} degrees of upright, "
+            "but was not balancing at the end."
+        )
     else:
         kind = run.scene("input", "kind")
         moved = "free motion" if kind in (None, "none") else f"open-loop motion under the input {kind}"
@@ -62,7 +76,9 @@ def spoken(run):
     sentences = [sentence if sentence.endswith(".") else sentence + "." for sentence in sentences]
     ns = run.result["ns_per_tick"]
     if not run.scene("scene", "realtime") and ns > 0:
-        sentences.append(f"A tick took {ns:.0f} ns, which is {1e9 * run.result['dt'] / ns:.0f} times real time.")
+        sentences.append(
+            f"A tick took {ns:.0f} ns, which is {1e9 * run.result['dt'] / ns:.0f} times real time."
+        )
     return "\n".join(f"  {sentence}" for sentence in sentences)
 
 
@@ -103,11 +119,16 @@ def pictures(run):
     film_end = run.duration if run.caught_at is None else min(run.duration, run.caught_at * 1.12 + 0.2)
     frames = mechanism.film(drawn, 0.0, film_end - run.result["dt"], drawn.frames)
     strip = "".join(f'<figure class="{mode}">{svg}{time:.2f} s</figure>' for time, mode, svg in frames)
-    return (f'<h2>Motion</h2><div class="pictures"><figure>{mechanism.stroboscope(drawn, begin, end, poses)}'
-            f'<figcaption class="note">{swing}: from {begin:.2f} s, one pose every {1e3 * every:.0f} ms, the later '
-            f'the darker.</figcaption></figure><div><div class="film" style="--frame:{drawn.frame_width}px">{strip}</div>'
-            f'<p class="note">{len(frames)} moments at equal times, each with the path of the half second before it.</p>'
-            '</div></div>')
+    return (
+        f'<h2>Motion</h2><div class="pictures"><figure>{mechanism.stroboscope(drawn, begin, end, poses)}'
+        f'<figcaption class="note">{swing}: from {begin:.2f} s, one pose every {1e3 * every:.0f} ms, '
+        'the later '
+        f'the darker.</figcaption></figure><div><div class="film" '
+        f'style="--frame:{drawn.frame_width}px">{strip}</div>'
+        f'<p class="note">{len(frames)} moments at equal times, each with the path of the half second '
+        'before it.</p>'
+        "</div></div>"
+    )
 
 
 def plots(run):
@@ -139,8 +160,11 @@ def plots(run):
         near.line(time, estimate, "estimate", "estimated")
         near.line(time, run.degrees, "true", "true")
     if any(table["applied"]):
-        name, unit = ("voltage", "V") if run.scene.has_motor else (run.system["input_without_motor"]["name"],
-                                                                  run.system["input_without_motor"]["unit"])
+        name, unit = (
+            ("voltage", "V")
+            if run.scene.has_motor
+            else (run.system["input_without_motor"]["name"], run.system["input_without_motor"]["unit"])
+        )
         input_ = panel(name, unit)
         if table["wanted"] != table["applied"]:
             input_.line(time, table["wanted"], "wanted", "wanted")
@@ -169,45 +193,70 @@ def plots(run):
 
 def mode_key(run):
     names = dict.fromkeys(span.mode for span in run.modes if span.mode != "open_loop")
-    return "".join(f'<span class="key"><i class="swatch mode {name}"></i>{words(name)}</span> ' for name in names)
+    return "".join(
+        f'<span class="key"><i class="swatch mode {name}"></i>{words(name)}</span> ' for name in names
+    )
 
 
 def command_lines(run):
     sets = "".join(f" --set {shlex.quote(override)}" for override in run.scene.overrides)
     scene = shlex.quote(run.scene.path)
-    return (f"mctau run {scene}{sets} --csv run.csv --json > run.json\n"
-            f"tools/report/report.py --csv run.csv --json run.json --scene {scene}{sets} -o report.html")
+    return (
+        f"mctau run {scene}{sets} --csv run.csv --json > run.json\n"
+        f"tools/report/report.py --csv run.csv --json run.json --scene {scene}{sets} -o report.html"
+    )
 
 
 def fault_table(run):
     if not run.faults:
         return ""
-    rows = "".join(f'<tr><td>{html.escape(name)}<td class="n">{time:.3f} s<td class="n">'
-                   f'{run.result["fault_ticks"].get(name, 0)}' for time, name in run.faults)
-    return ('<h2>Faults</h2><p class="note">What each one means and what to do: docs/control.md.</p><div class="scroll"><table>'
-            f'<tr><th>fault<th>first latched<th>seen on ticks{rows}</table></div>')
+    rows = "".join(
+        f'<tr><td>{html.escape(name)}<td class="n">{time:.3f} s<td class="n">'
+        f'{run.result["fault_ticks"].get(name, 0)}'
+        for time, name in run.faults
+    )
+    return (
+        '<h2>Faults</h2><p class="note">What each one means and what to do: docs/control.md.</p><div '
+        'class="scroll"><table>'
+        f"<tr><th>fault<th>first latched<th>seen on ticks{rows}</table></div>"
+    )
 
 
 def final_state(run):
-    rows = "".join(f'<tr><td>{name}<td class="n">{run.result["state"][name]!r}<td class="n">{run.result["state_hex"][name]}'
-                   for name in run.result["state"])
-    return ('<h2>State at the end</h2><p class="note">The same scene gives the same bits again.</p><div class="scroll"><table>'
-            f'<tr><th>state<th>SI units<th>bits{rows}</table></div>')
+    rows = "".join(
+        f'<tr><td>{name}<td class="n">{run.result["state"][name]!r}<td class="n">'
+        f'{run.result["state_hex"][name]}'
+        for name in run.result["state"]
+    )
+    return (
+        '<h2>State at the end</h2><p class="note">The same scene gives the same bits again.</p><div '
+        'class="scroll"><table>'
+        f"<tr><th>state<th>SI units<th>bits{rows}</table></div>"
+    )
 
 
 def page(run):
     result = run.result
     verdict, tone = VERDICTS.get(result["verdict"], (words(result["verdict"]), ""))
-    tiles = "".join(f"<div><dt>{html.escape(what)}</dt><dd>{html.escape(value)} <small>{html.escape(unit)}</small></dd></div>"
-                    for what, value, unit in figures(run))
+    tiles = "".join(
+        f"<div><dt>{html.escape(what)}</dt><dd>{html.escape(value)} <small>{html.escape(unit)}</small>"
+        "</dd></div>"
+        for what, value, unit in figures(run)
+    )
     drawn = plots(run)
     panels = "".join(plot.html() for plot in drawn)
     sets = "".join(f"\n# from the command line: {override}" for override in run.scene.overrides)
     version = run.command.text("--version")
-    varied = ('<p class="note">The plant was varied; energies are those of the scene\'s own parameters.</p>' if run.is_varied else "")
+    varied = (
+        '<p class="note">The plant was varied; energies are those of the scene\'s own parameters.</p>'
+        if run.is_varied
+        else ""
+    )
     return f"""<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{words(run.name)}: {verdict.lower()}</title><style>{(HERE / "page.css").read_text(encoding="utf-8")}</style></head><body>
+<html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{words(run.name)}: {verdict.lower()}</title>
+<style>{(HERE / "page.css").read_text(encoding="utf-8")}</style></head><body>
 <header><div class="kind"><span>mctau run</span><span>{html.escape(run.scene.path)}</span></div>
 <h1 class="{tone}">{verdict}</h1><p class="lead">{html.escape(lead(run))}</p></header>
 <dl class="figures">{tiles}</dl>
@@ -217,20 +266,28 @@ def page(run):
 {final_state(run)}
 <h2>Scene</h2><pre>{html.escape(run.scene.text.rstrip() + sets)}</pre>
 <h2>How to run it again</h2><pre>{html.escape(command_lines(run))}</pre>
-<p class="note">{html.escape(version)}; {run.name}, stepper {result["stepper"]}, precision {result["precision"]}, tick {result["dt"]:g} s,
+<p class="note">{html.escape(version)}; {run.name}, stepper {result["stepper"]},
+precision {result["precision"]}, tick {result["dt"]:g} s,
 {result["ticks"]} ticks. Each curve shows the smallest and the largest value within a pixel's width.</p>
 </body></html>
 """
 
 
 def arguments(argv):
-    parser = argparse.ArgumentParser(prog="tools/report/report.py", description="Makes one HTML page of a run.",
-                                     epilog="exit codes: 0 well, 2 wrong input, 3 a file could not be read or written")
+    parser = argparse.ArgumentParser(
+        prog="tools/report/report.py",
+        description="Makes one HTML page of a run.",
+        epilog="exit codes: 0 well, 2 wrong input, 3 a file could not be read or written",
+    )
     parser.add_argument("--csv", required=True, help="what mctau run --csv wrote")
     parser.add_argument("--json", required=True, help="what mctau run --json printed")
     parser.add_argument("--scene", required=True, help="the scene's file")
-    parser.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="as given to mctau run")
-    parser.add_argument("--mctau", default=os.environ.get("MCTAU", str(ROOT / "build" / "host" / "mctau")), help="the command")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="as given to mctau run"
+    )
+    parser.add_argument(
+        "--mctau", default=os.environ.get("MCTAU", str(ROOT / "build" / "host" / "mctau")), help="the command"
+    )
     parser.add_argument("-o", "--output", required=True, help="the page to write")
     parser.add_argument("--say", action="store_true", help="say on stdout what happened, too")
     return parser.parse_args(argv)
@@ -244,7 +301,9 @@ def main(argv=None):
         try:
             pathlib.Path(given.output).write_text(text, encoding="utf-8")
         except OSError as error:
-            raise run_data.Complaint(f"{given.output}: the page cannot be written: {error.strerror}", run_data.INPUT_OUTPUT) from None
+            raise run_data.Complaint(
+                f"{given.output}: the page cannot be written: {error.strerror}", run_data.INPUT_OUTPUT
+            ) from None
         if given.say:
             print(spoken(run))
     except run_data.Complaint as complaint:

@@ -33,8 +33,9 @@ def read_result(path):
     try:
         result = json.loads(read_text(path))
     except json.JSONDecodeError as error:
-        raise Complaint(f"{path}:{error.lineno}: found what is not JSON; allowed the output of "
-                        "mctau run --json") from None
+        raise Complaint(
+            f"{path}:{error.lineno}: found what is not JSON; allowed the output of " "mctau run --json"
+        ) from None
     schema = result.get("schema", "none") if isinstance(result, dict) else "none"
     if schema != "mctau.run/1":
         raise Complaint(f"{path}: found schema {schema}; allowed mctau.run/1, which mctau run --json prints")
@@ -51,7 +52,9 @@ def read_rows(path):
     columns = [[] for _ in header]
     for line, row in enumerate(rows, start=2):
         if len(row) != len(header):
-            raise Complaint(f"{path}:{line}: found {len(row)} fields; allowed {len(header)}: the file has been cut")
+            raise Complaint(
+                f"{path}:{line}: found {len(row)} fields; allowed {len(header)}: the file has been cut"
+            )
         for column, text in zip(columns, row):
             column.append(text)
     if not columns[0]:
@@ -71,7 +74,7 @@ def read_rows(path):
 
 
 class Command:
-    """The command, asked for what the core alone knows: defaults and energies. Nothing of it is repeated here."""
+    """The command, asked for what the core alone knows: defaults and energies."""
 
     def __init__(self, path):
         self.path = path
@@ -109,10 +112,14 @@ class Scene:
         except tomllib.TOMLDecodeError as error:
             raise Complaint(f"{path}: found what is not TOML: {error}") from None
         if given.get("scene", {}).get("system") != system["name"]:
-            raise Complaint(f"{path}: found another system than that of the result, {system['name']}; "
-                            "allowed the scene that was run")
-        self.values = {table["name"]: {key["name"]: key.get("default") for key in table["keys"]}
-                       for table in catalogue["tables"]}
+            raise Complaint(
+                f"{path}: found another system than that of the result, {system['name']}; "
+                "allowed the scene that was run"
+            )
+        self.values = {
+            table["name"]: {key["name"]: key.get("default") for key in table["keys"]}
+            for table in catalogue["tables"]
+        }
         self.values["parameters"] = {field["name"]: field["default"] for field in system["parameters"]}
         self.values["effects"] = {effect["name"]: effect["default"] for effect in system["effects"]}
         for table, keys in given.items():
@@ -152,8 +159,10 @@ class Run:
             raise Complaint(f"{csv_path}: found no column {missing[0]}; allowed the CSV file of the same run")
         self.time = self.table["time"]
         if len(self.time) != self.result["ticks"]:
-            raise Complaint(f"{csv_path}: found {len(self.time)} rows; allowed {self.result['ticks']}, the ticks of "
-                            f"{json_path}: both must be of the same run")
+            raise Complaint(
+                f"{csv_path}: found {len(self.time)} rows; allowed {self.result['ticks']}, the ticks of "
+                f"{json_path}: both must be of the same run"
+            )
         self.duration = self.result["time"]
         self.angle_name = self.system["upright_coordinate"]
         self.rate_names = [coordinate["rate"]["name"] for coordinate in self.system["coordinates"]]
@@ -168,7 +177,9 @@ class Run:
         """Total energy at each tick, from the mass matrix and the potential energy that `mctau mct` shows."""
         sets = [part for override in self.scene.overrides for part in ("--set", override)]
         # Upright, M is all that a kinetic energy needs; aside, its off-diagonal entry tells how it turns.
-        at = lambda angle: self.command.json("mct", self.scene.path, *sets, "--set", f"initial.{self.angle_name}={angle}")
+        at = lambda angle: self.command.json(
+            "mct", self.scene.path, *sets, "--set", f"initial.{self.angle_name}={angle}"
+        )
         upright, level = at(0), at(math.pi / 2)
         M, aside = upright["M"], level["M"]
         self.upright_energy = upright["energies"]["potential"]
@@ -181,7 +192,7 @@ class Run:
             m12 = aside[0][1] + (M[0][1] - aside[0][1]) * c
             kinetic = 0.5 * (M[0][0] * a * a + M[1][1] * b * b) + m12 * a * b
             self.energy.append(kinetic + self.upright_energy * c + 0.5 * inductance * i * i)
-        # A varied plant has other masses than the scene says: then this is the model's energy, and is called so.
+        # A varied plant has other masses than the scene says: then this is the model's energy.
         self.is_varied = float(self.scene("variation", "spread") or 0) > 0
 
     @property
@@ -205,8 +216,11 @@ class Run:
     def turning_points(self, begin, end):
         """Times at which the pendulum changes its direction."""
         rates = self.table[self.rate_names[self.upright_index]]
-        return [self.time[i] for i in range(1, len(rates))
-                if begin <= self.time[i] <= end and (rates[i] > 0) != (rates[i - 1] > 0)]
+        return [
+            self.time[i]
+            for i in range(1, len(rates))
+            if begin <= self.time[i] <= end and (rates[i] > 0) != (rates[i - 1] > 0)
+        ]
 
     def at(self, time):
         """Index of the row at a time."""
