@@ -21,7 +21,14 @@
 #include "mctau/observer.h"
 #include "mctau/scene.h"
 
-typedef enum { MCT_MODE_OPEN_LOOP, MCT_MODE_WAIT, MCT_MODE_SWING_UP, MCT_MODE_BALANCE, MCT_MODE_COUNT } mct_mode;
+typedef enum {
+    MCT_MODE_OPEN_LOOP, /**< no controller */
+    MCT_MODE_WAIT,      /**< no valid reading so far */
+    MCT_MODE_SWING_UP,
+    MCT_MODE_BALANCE,
+    MCT_MODE_STOPPED,   /**< a fault is latched: zero volts, whatever is wanted */
+    MCT_MODE_COUNT
+} mct_mode;
 
 /** Name of a mode, as telemetry shows it. */
 const char *mct_mode_name(mct_mode mode);

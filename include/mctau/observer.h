@@ -8,7 +8,7 @@
  *     e- = e + counts * unit - h rate - h^2/2 a,   e = p^2 e-,   rate += h a + (1 - p)^2 e- / h,   p = exp(-bandwidth h).
  * Position is the count less e, so it never drifts from the encoder; the difference of counts is taken modulo the counter,
  * so it is exact across a wrap. With a right model there is no lag, and a count's step moves the rate by
- * (1 - p)^2 unit / h only (0.009 rad/s at 4096 counts a turn, 1 kHz and 80 rad/s).
+ * (1 - p)^2 unit / h only (0.004 rad/s at 4096 counts a turn, 1 kHz and 50 rad/s).
  * Source: alpha-beta filter, critically damped (Benedict, Bordner 1962), with model feed-forward.
  */
 #ifndef MCTAU_OBSERVER_H

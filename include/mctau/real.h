@@ -46,4 +46,16 @@ typedef double mct_real;
 #define MCT_UNROLL
 #endif
 
+/** Whether a number is neither infinite nor NaN. */
+MCT_INLINE bool mct_finite(mct_real value)
+{
+    return value - value == 0;
+}
+
+/** The nearest to `value` within +-bound; bound at least 0. NaN stays NaN. */
+MCT_INLINE mct_real mct_clamp(mct_real value, mct_real bound)
+{
+    return value > bound ? bound : value < -bound ? -bound : value;
+}
+
 #endif

@@ -19,7 +19,7 @@ typedef struct {
 
 const char *mct_mode_name(mct_mode mode)
 {
-    static const char *const names[MCT_MODE_COUNT] = {"open_loop", "wait", "swing_up", "balance"};
+    static const char *const names[MCT_MODE_COUNT] = {"open_loop", "wait", "swing_up", "balance", "stopped"};
     return names[mode];
 }
 
@@ -127,7 +127,7 @@ static mct_status catch_region(const sampled_model *model, double limit, mct_rea
     return MCT_OK;
 }
 
-/* Energy that lifts the pendulum from hanging to upright, and its natural frequency when hanging, from the linear model. */
+/* Energy that lifts the pendulum from hanging to upright, and its natural frequency when hanging. */
 static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
 {
     const mct_system *system = controller->system;
@@ -135,16 +135,10 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
     mct_real x[MCT_MAX_STATES] = {0};
     system->evaluate(&controller->constants, controller->effects, x, 0, &upright);
     const double lift = 2 * (double)upright.potential_energy;
-    mct_linear_model model;
-    system->linearise(scene, &model);
     const int angle = system->upright_coordinate;
     const double inertia = (double)upright.M[angle][angle];
     const double frequency = mct_sqrt(0.5 * lift / inertia);
     controller->largest_shift = (mct_real)(scene->energy_band * lift);
-    const double slope = model.A[(system->coordinate_count + angle) * model.states + angle];
-    controller->observer.gravity_slope = (mct_real)slope;
-    controller->information = (mct_real)(slope * slope * 5);
-    controller->memory = (mct_real)(slope * slope * 2 / scene->dt);
     controller->energy_scale = (mct_real)(1 / (scene->energy_band * lift));
     controller->still = (mct_real)(0.02 * frequency);
     controller->track_half_length = (mct_real)scene->track_half_length;
@@ -153,9 +147,17 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
     controller->track_damping = (mct_real)(0.5 * frequency);
 }
 
-static mct_real clamp(mct_real value, mct_real bound)
+/* The model's gravity; a prior worth 5 ticks of it, so that noise does not lead astray; and a memory of 2 s of it. */
+static void prepare_learning(mct_controller *controller, const mct_scene *scene)
 {
-    return value > bound ? bound : value < -bound ? -bound : value;
+    const mct_system *system = controller->system;
+    const int angle = system->upright_coordinate;
+    mct_linear_model model;
+    system->linearise(scene, &model);
+    const double slope = model.A[(system->coordinate_count + angle) * model.states + angle];
+    controller->observer.gravity_slope = (mct_real)slope;
+    controller->information = (mct_real)(slope * slope * 5);
+    controller->memory = (mct_real)(slope * slope * 2 / scene->dt);
 }
 
 static mct_real weighted(const mct_real *weights, const mct_real *x, int states)
@@ -195,11 +197,11 @@ static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real w
     const bool turned = direction != controller->direction;
     const bool crossed = (angle > 0) != (controller->last_angle > 0);
     if (c > 0 && (crossed || turned) && missing * controller->energy_scale < 1) {
-        controller->energy_shift = clamp(controller->energy_shift + LEARNING * missing, controller->largest_shift);
+        controller->energy_shift = mct_clamp(controller->energy_shift + LEARNING * missing, controller->largest_shift);
     }
     controller->direction = direction;
     controller->last_angle = angle;
-    return direction * clamp((missing + controller->energy_shift) * controller->energy_scale, 1);
+    return direction * mct_clamp((missing + controller->energy_shift) * controller->energy_scale, 1);
 }
 
 /*
@@ -214,7 +216,7 @@ static void learn_gravity(mct_controller *controller)
     const mct_real information = controller->information + gravity * gravity;
     controller->information = information < controller->memory ? information : controller->memory;
     const mct_real correction = observer->correction[controller->system->upright_coordinate];
-    observer->excess = clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
+    observer->excess = mct_clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
 }
 
 /* The wheel's reaction does the work -torque arm_rate on the arm. */
@@ -257,11 +259,12 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
     return (wanted - without[0]) / (with_one_volt[0] - without[0]);
 }
 
-/* How each system is swung up. */
+/* How each system is swung up, and whether its law learns the gravity ratio (a cart's pole knows it from its length). */
 static const struct {
     const mct_system *system;
     mct_real (*swing_up)(mct_controller *controller);
-} laws[] = {{&mct_cart_pole, swing_up_cart_pole}, {&mct_reaction_wheel, swing_up_reaction_wheel}};
+    bool learns_gravity;
+} laws[] = {{&mct_cart_pole, swing_up_cart_pole, false}, {&mct_reaction_wheel, swing_up_reaction_wheel, true}};
 
 mct_status mct_controller_init(mct_controller *controller, const mct_scene *scene, mct_message *why)
 {
@@ -272,9 +275,11 @@ mct_status mct_controller_init(mct_controller *controller, const mct_scene *scen
     controller->mode = MCT_MODE_WAIT;
     controller->capture = (mct_real)scene->capture;
     controller->direction = 1;
+    bool learns_gravity = false;
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
         if (laws[i].system == system) {
             controller->swing_up = laws[i].swing_up;
+            learns_gravity = laws[i].learns_gravity;
         }
     }
     if (controller->swing_up == NULL) {
@@ -304,6 +309,9 @@ mct_status mct_controller_init(mct_controller *controller, const mct_scene *scen
         return status;
     }
     prepare_swing_up(controller, scene);
+    if (learns_gravity) {
+        prepare_learning(controller, scene);
+    }
     return MCT_OK;
 }
 
@@ -347,5 +355,5 @@ mct_real mct_controller_update(mct_controller *controller, const mct_reading *re
     }
     const mct_real wanted =
         controller->mode == MCT_MODE_BALANCE ? balance(controller) : controller->swing_up(controller);
-    return clamp(wanted, controller->limit);
+    return mct_clamp(wanted, controller->limit);
 }

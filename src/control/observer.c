@@ -72,11 +72,13 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
     }
     mct_real a[MCT_MAX_COORDINATES];
     observer->system->accelerate(observer->constants, observer->effects, observer->x, input, a);
-    const int upright = observer->system->upright_coordinate;
-    mct_real s, c;
-    mct_sincos(observer->x[upright], &s, &c);
-    observer->gravity = observer->gravity_slope * s;
-    a[upright] += observer->excess * observer->gravity;
+    if (observer->gravity_slope > 0) {
+        const int upright = observer->system->upright_coordinate;
+        mct_real s, c;
+        mct_sincos(observer->x[upright], &s, &c);
+        observer->gravity = observer->gravity_slope * s;
+        a[upright] += observer->excess * observer->gravity;
+    }
     for (int i = 0; i < n; i++) {
         mct_encoder_track *track = &observer->encoders[i];
         mct_real *rate = &observer->x[n + i];

@@ -64,11 +64,6 @@ void mct_supervisor_rearm(mct_supervisor *supervisor)
     supervisor->frozen_ticks = 0;
 }
 
-static bool is_finite(mct_real value)
-{
-    return value - value == 0;
-}
-
 static mct_real size_of(mct_real value)
 {
     return value < 0 ? -value : value;
@@ -80,7 +75,7 @@ static void watch_estimate(mct_supervisor *supervisor, const mct_real *estimate)
     const int n = system->coordinate_count;
     const int driven = system->driven_coordinate;
     for (int i = 0; i < 2 * n; i++) {
-        if (!is_finite(estimate[i])) {
+        if (!mct_finite(estimate[i])) {
             mct_supervisor_fault(supervisor, MCT_FAULT_ESTIMATE);
             return;
         }
@@ -115,7 +110,7 @@ mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *read
     if (reading->age_us >= supervisor->stale_us) {
         mct_supervisor_fault(supervisor, MCT_FAULT_SENSOR_STALE);
     }
-    if (!is_finite(wanted)) {
+    if (!mct_finite(wanted)) {
         mct_supervisor_fault(supervisor, MCT_FAULT_COMMAND);
     }
     if (estimate != NULL) {

@@ -14,11 +14,6 @@
 #include "mctau/real.h"
 #include "mctau/symmetric2.h"
 
-MCT_INLINE mct_real mct_clamp(mct_real value, mct_real bound)
-{
-    return value > bound ? bound : value < -bound ? -bound : value;
-}
-
 /* W: inverse mass matrix; v: velocity without friction; bound: largest impulse; p: impulse (out). */
 static inline void mct_friction_impulse(mct_symmetric2 W, const mct_real *v, const mct_real *bound, mct_real *p)
 {

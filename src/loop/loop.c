@@ -46,6 +46,7 @@ void mct_loop_tick(mct_loop *loop)
         estimate = loop->controller.observer.x;
         memcpy(record->estimate, estimate, sizeof record->estimate);
     } else {
+        record->mode = MCT_MODE_OPEN_LOOP;
         record->wanted = mct_input_at(&loop->input, loop->tick);
     }
     record->applied = mct_supervisor_pass(supervisor, &record->reading, estimate, record->wanted);
@@ -55,6 +56,9 @@ void mct_loop_tick(mct_loop *loop)
     }
     loop->applied = record->applied;
     record->faults = supervisor->latched;
+    if (record->faults != 0) {
+        record->mode = MCT_MODE_STOPPED;
+    }
     if (loop->ring != NULL) {
         mct_ring_push(loop->ring, record);
     }

@@ -13,11 +13,6 @@ static const mct_real turn_rest = -1.7484555e-07F;
 static const mct_real turn_rest = 2.4492935982947064e-16;
 #endif
 
-static bool is_finite(mct_real value)
-{
-    return value - value == 0;
-}
-
 /* Finite, and within what any mechanism can do in a tick; false for NaN. */
 static bool is_sane(const mct_state *state)
 {
@@ -79,8 +74,8 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
 
 void mct_plant_step(mct_plant *plant, mct_real input)
 {
-    if (is_finite(input)) {
-        plant->input = input > plant->bound ? plant->bound : input < -plant->bound ? -plant->bound : input;
+    if (mct_finite(input)) {
+        plant->input = mct_clamp(input, plant->bound);
     } else {
         plant->rejected_inputs++;
     }

@@ -43,7 +43,7 @@ static const mct_field scene_fields[] = {
 
 static const mct_field controller_fields[] = {
     CHOICE("kind", controllers, MCT_CONTROLLER_NONE, controller, "what decides the voltage"),
-    REAL("observer_bandwidth", "rad/s", 1, 1e4, 80, observer_bandwidth, "of the velocity estimate"),
+    REAL("observer_bandwidth", "rad/s", 1, 1e4, 50, observer_bandwidth, "of the velocity estimate"),
     REAL("energy_band", "", 0.001, 10, 0.02, energy_band,
          "fraction of the energy from hanging to upright over which pumping fades out"),
     REAL("capture", "", 0.05, 0.95, 0.5, capture,

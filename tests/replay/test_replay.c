@@ -10,7 +10,7 @@
 
 #if MCTAU_HAVE_LCM
 
-#include "lcm/logged_run.h"
+#include "telemetry/logged_run.h"
 #include "tools/mctau/runner_replay.c"
 
 /* The front end's. */

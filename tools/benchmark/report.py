@@ -40,7 +40,8 @@ def run_all(folder, effort, rounds):
     there = {name: folder / "tools" / "benchmark" / file for name, file in PROGRAMS.items()}
     there = {name: file for name, file in there.items() if file.exists()}
     for turn in range(rounds):
-        print(f"\rround {turn + 1} of {rounds}", end="", file=sys.stderr, flush=True)
+        if sys.stderr.isatty():
+            print(f"\rround {turn + 1} of {rounds}", end="", file=sys.stderr, flush=True)
         for name, file in there.items():
             done = subprocess.run([file, *effort], capture_output=True, text=True)
             if done.returncode:
@@ -53,7 +54,8 @@ def run_all(folder, effort, rounds):
                 numbers = [i for i in range(len(words)) if words[i].replace(".", "", 1).isdigit()]
                 key = (name, " ".join(words[1:numbers[0]]))
                 samples.setdefault(key, Sample()).times += [float(words[i]) for i in numbers]
-    print("\r\033[K" if sys.stderr.isatty() else "", end="\n" if not sys.stderr.isatty() else "", file=sys.stderr)
+    if sys.stderr.isatty():
+        print("\r\033[K", end="", file=sys.stderr)
     return {key: sample.summary() for key, sample in samples.items()}, said, sorted(set(PROGRAMS) - set(there))
 
 

@@ -39,11 +39,12 @@ static int finish(int exit_code)
     return exit_code;
 }
 
-static int run_verb(const verb *chosen, int argc, char **argv)
+static int run_verb(const verb *chosen, const char *program, int argc, char **argv)
 {
     arguments given;
     int exit_code;
     if (arguments_read(&given, chosen, argc, argv, &exit_code)) {
+        given.program = program;
         exit_code = chosen->run(&given);
     }
     arguments_free(&given);
@@ -55,7 +56,7 @@ int main(int argc, char **argv)
     const char *first = argc > 1 ? argv[1] : "";
     for (int i = 0; i < VERBS; i++) {
         if (strcmp(first, verbs[i]->name) == 0) {
-            return run_verb(verbs[i], argc - 1, argv + 1);
+            return run_verb(verbs[i], argv[0], argc - 1, argv + 1);
         }
     }
     if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0 || strcmp(first, "help") == 0) {

@@ -198,7 +198,7 @@ static void print_ledger(const mct_result *at)
     }
     printf("\nPower [W]: what changes it; the total is its rate\n");
     for (size_t i = 0; i < sizeof power / sizeof power[0]; i++) {
-        printf("  %-18s %14.8g\n", power[i].name, power[i].value);
+        printf("  %-18s %14.8g\n", power[i].name, power[i].value + 0.0); /* shows -0 as 0 */
     }
 }
 

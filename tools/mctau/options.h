@@ -39,6 +39,7 @@ typedef struct {
 
 /* What a command line asks for. */
 typedef struct arguments {
+    const char *program;             /* as called: what hints name */
     const verb *verb;
     const char *operand;             /* NULL when left out */
     const char *values[MAX_OPTIONS]; /* by row of the verb's table; NULL when not given, "" for a switch */

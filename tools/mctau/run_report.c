@@ -93,7 +93,15 @@ void print_run_json(const run_report *report, FILE *file)
 {
     const run_result *result = &report->result;
     const mct_scene *scene = &report->scene->scene;
+    const arguments *given = report->scene->given;
     json out = json_begin(file, "mctau.run/1");
+    json_text(&out, "version", MCT_VERSION);
+    json_text(&out, "scene", report->scene->path);
+    json_list(&out, "overrides");
+    for (int i = 0; i < given->override_count; i++) {
+        json_text(&out, NULL, given->overrides[i].assignment);
+    }
+    json_end_list(&out);
     json_text(&out, "system", mct_systems[scene->system]->name);
     json_text(&out, "stepper", mct_steppers[scene->stepper].name);
     json_text(&out, "precision", report->scene->runner->precision);
@@ -297,9 +305,10 @@ static void print_next(const run_report *report, FILE *file)
     const run_result *result = &report->result;
     const run_options *options = report->options;
     const char *path = report->scene->path;
+    const char *mctau = report->scene->given->program;
     fputs("\nNext\n", file);
     if (report->verdict == DIVERGED) {
-        fprintf(file, "  a smaller step (--dt, --set scene.substeps=10) or another --stepper; mctau list tells which suit\n");
+        fprintf(file, "  a smaller step (--dt, --set scene.substeps=10) or another --stepper; %s list tells which suit\n", mctau);
     } else if (report->verdict == NOT_BALANCED && result->upright_at >= 0) {
         fprintf(file, "  a longer --duration\n");
     } else if (report->verdict == NOT_BALANCED) {
@@ -310,12 +319,12 @@ static void print_next(const run_report *report, FILE *file)
                 result->fault_at);
     }
     if (options->log[0] != '\0' && result->log_errors == 0) {
-        fprintf(file, "  mctau replay %s   runs it again from its log and proves the same bits\n", options->log);
+        fprintf(file, "  %s replay %s   runs it again from its log and proves the same bits\n", mctau, options->log);
     }
     if (options->csv == NULL) {
-        fprintf(file, "  mctau run %s --csv run.csv   writes every tick, for a plot\n", path);
+        fprintf(file, "  %s run %s --csv run.csv   writes every tick, for a plot\n", mctau, path);
     }
-    fprintf(file, "  mctau mct %s   shows M, C, tau and the constraint forces at the initial state\n", path);
+    fprintf(file, "  %s mct %s   shows M, C, tau and the constraint forces at the initial state\n", mctau, path);
 }
 
 void print_run(const run_report *report, FILE *file)

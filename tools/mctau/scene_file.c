@@ -145,6 +145,7 @@ int scene_file_read(scene_file *self, const arguments *given)
     size_t length = 0;
     mct_message why;
     memset(self, 0, sizeof *self);
+    self->given = given;
     self->path = given->operand;
     int exit_code = read_text(self->path, &text, &length);
     if (exit_code != 0) {

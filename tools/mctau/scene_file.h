@@ -9,7 +9,8 @@
 #include "runner.h"
 
 typedef struct {
-    const char *path; /* as given; "-" is stdin */
+    const arguments *given; /* the command line */
+    const char *path;       /* as given; "-" is stdin */
     char *text;       /* the file's text, and a line "#!set table.key=value" for each override: what a log keeps */
     double *samples;  /* of a csv input, one a tick; NULL without */
     size_t sample_count;

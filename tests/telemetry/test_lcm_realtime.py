@@ -61,7 +61,6 @@ if __name__ == "__main__":
     subscribe(float(sys.argv[1]))
     sys.exit()
 
-sys.modules.pop("lcm", None)  # pytest has this folder as a module of that name
 if not hasattr(pytest.importorskip("lcm"), "LCM"):
     pytest.skip("no Python package lcm", allow_module_level=True)
 pytest.importorskip("mctau.tick_t", reason="the build made no telemetry types for Python")

@@ -2,11 +2,9 @@
 
 import json
 import math
-import sys
 
 import pytest
 
-sys.modules.pop("lcm", None)  # pytest has this folder as a module of that name
 lcm = pytest.importorskip("lcm")
 if not hasattr(lcm, "EventLog"):
     pytest.skip("no Python package lcm", allow_module_level=True)

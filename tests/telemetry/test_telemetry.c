@@ -16,7 +16,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "lcm/logged_run.h"
+#include "telemetry/logged_run.h"
 #include "mctau_health_t.h"
 #include "mctau_scene_t.h"
 #include "mctau_tick_t.h"
