@@ -13,21 +13,22 @@
 typedef struct {
     double period_ns;
     int64_t start_ns;
-    uint64_t tick;       /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up */
-    int64_t woke_ns;     /**< when the present tick began */
-    bool has_priority;   /**< SCHED_FIFO was granted */
-    bool has_memory;     /**< mlockall was granted */
+    uint64_t tick;     /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up */
+    int64_t woke_ns;   /**< when the present tick began */
+    bool has_priority; /**< SCHED_FIFO was granted */
+    bool has_memory;   /**< mlockall was granted */
     mct_timing timing;
 } mct_clock;
 
 /**
- * Starts the clock at the present time. Asks for SCHED_FIFO and locked memory; goes on without where they are not allowed
- * (see has_priority, has_memory).
+ * Starts the clock at the present time. Asks for SCHED_FIFO and locked memory; goes on without where they are
+ * not allowed (see has_priority, has_memory).
  */
 void mct_clock_start(mct_clock *clock, double period);
 
 /**
- * Sleeps until the next deadline. Deadlines that have passed already are skipped and counted, never caught up.
+ * Sleeps until the next deadline. Deadlines that have passed already are skipped and counted, never caught
+ * up.
  */
 void mct_clock_wait(mct_clock *clock);
 

@@ -24,16 +24,16 @@
 
 #define MCT_TELEMETRY_VERSION 1 /**< of the meaning of the messages; scene_t carries it */
 
-#define MCT_CHANNEL_TICK "MCTAU_TICK"
-#define MCT_CHANNEL_SCENE "MCTAU_SCENE"
-#define MCT_CHANNEL_HEALTH "MCTAU_HEALTH"
+#define MCT_CHANNEL_TICK      "MCTAU_TICK"
+#define MCT_CHANNEL_SCENE     "MCTAU_SCENE"
+#define MCT_CHANNEL_HEALTH    "MCTAU_HEALTH"
 
 /** Begins a line of a scene text that holds a value given from outside: "#!set table.key=value". */
-#define MCT_OVERRIDE_MARK "#!set "
-#define MCT_MAX_OVERRIDES 64
+#define MCT_OVERRIDE_MARK        "#!set "
+#define MCT_MAX_OVERRIDES        64
 
 #define MCT_TELEMETRY_SCENE_SIZE 65536 /**< longest scene message [bytes]: the text and some 1 kB */
-#define MCT_TELEMETRY_LOG_SIZE 65536   /**< buffer of the log [bytes]: 0.2 s at 1 kHz */
+#define MCT_TELEMETRY_LOG_SIZE   65536 /**< buffer of the log [bytes]: 0.2 s at 1 kHz */
 
 typedef struct {
     const char *url; /**< LCM URL (udpm://...), or NULL or "" for none */
@@ -55,21 +55,21 @@ typedef struct {
 
 /** The event log. It ends at its first error, cut back to the last whole event, fit for a replay. */
 typedef struct {
-    void *file;                   /**< lcm_eventlog_t; NULL when there is none, or after an error */
+    void *file; /**< lcm_eventlog_t; NULL when there is none, or after an error */
     bool wanted;
-    uint64_t kept_bytes;          /**< written so far, up to a whole event */
-    uint64_t waiting_bytes;       /**< in the buffer */
-    uint64_t waiting_events;      /**< in the buffer */
-    uint64_t waiting_records;     /**< of them */
+    uint64_t kept_bytes;      /**< written so far, up to a whole event */
+    uint64_t waiting_bytes;   /**< in the buffer */
+    uint64_t waiting_events;  /**< in the buffer */
+    uint64_t waiting_records; /**< of them */
     char buffer[MCT_TELEMETRY_LOG_SIZE];
 } mct_telemetry_log;
 
 /** What health_t tells. */
 typedef struct {
     int64_t messages;
-    uint64_t period;        /**< [ticks] */
-    uint64_t next_tick;     /**< of the next message */
-    uint64_t tick;          /**< newest */
+    uint64_t period;    /**< [ticks] */
+    uint64_t next_tick; /**< of the next message */
+    uint64_t tick;      /**< newest */
     uint64_t dropped;
     uint32_t faults;
     uint32_t worst_late_us;

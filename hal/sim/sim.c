@@ -46,7 +46,8 @@ static uint64_t hash(uint64_t seed, uint64_t tick, uint64_t encoder)
 /* Nearly normal, standard deviation 1: the sum of four uniform numbers of 16 bits. */
 static double nearly_normal(uint64_t bits)
 {
-    const int64_t sum = (int64_t)((bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48));
+    const int64_t sum =
+        (int64_t)((bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48));
     return (double)(sum - 2 * 65535) * 2.6429e-5; /* 1 / sqrt(4 * 65536^2 / 12) */
 }
 
@@ -62,7 +63,8 @@ static void sense(const mct_sim *sim, mct_reading *reading)
     const mct_state *state = &plant->state;
     memset(reading, 0, sizeof *reading);
     for (int i = 0; i < plant->system->coordinate_count; i++) {
-        double counts = ((double)state->x[i] + (double)state->c[i]) * sim->unit_counts[i] - sim->start_counts[i];
+        double counts =
+            ((double)state->x[i] + (double)state->c[i]) * sim->unit_counts[i] - sim->start_counts[i];
         if (sim->noise > 0) {
             counts += sim->noise * nearly_normal(hash(sim->seed, plant->tick, (uint64_t)i));
         }

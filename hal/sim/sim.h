@@ -2,8 +2,9 @@
  * @file sim.h
  * The simulated HAL: a plant behind encoders and a motor driver, in lockstep with the loop or in real time.
  *
- * Sensors: incremental encoders that count from the plant's initial position, with noise, a limited counter, latency and
- * faults on request. The clock: in lockstep wait_tick advances the plant at once; in real time it also sleeps until the tick.
+ * Sensors: incremental encoders that count from the plant's initial position, with noise, a limited counter,
+ * latency and faults on request. The clock: in lockstep wait_tick advances the plant at once; in real time it
+ * also sleeps until the tick.
  */
 #ifndef MCTAU_HAL_SIM_H
 #define MCTAU_HAL_SIM_H
@@ -17,21 +18,21 @@
 typedef struct {
     mct_plant plant;
     /* sensors */
-    double turn_counts[MCT_MAX_COORDINATES];   /**< counts per turn or metre */
-    double unit_counts[MCT_MAX_COORDINATES];   /**< counts per radian or metre */
-    double start_counts[MCT_MAX_COORDINATES];  /**< at the initial position */
-    double noise;                              /**< standard deviation [counts] */
+    double turn_counts[MCT_MAX_COORDINATES];  /**< counts per turn or metre */
+    double unit_counts[MCT_MAX_COORDINATES];  /**< counts per radian or metre */
+    double start_counts[MCT_MAX_COORDINATES]; /**< at the initial position */
+    double noise;                             /**< standard deviation [counts] */
     uint32_t seed;
-    uint32_t counter_shift;                    /**< 32 - bits of the counters */
-    uint32_t latency;                          /**< [ticks] */
+    uint32_t counter_shift; /**< 32 - bits of the counters */
+    uint32_t latency;       /**< [ticks] */
     uint32_t tick_us;
-    int32_t fault;                             /**< MCT_SENSOR_FAULT_... */
-    uint64_t fault_begin, fault_end;           /**< [ticks] */
-    mct_reading queue[MCT_MAX_LATENCY + 1];    /**< readings of the last ticks, by tick modulo the size */
-    mct_reading last;                          /**< last delivered */
-    uint32_t silent_ticks;                     /**< since something was delivered */
+    int32_t fault;                          /**< MCT_SENSOR_FAULT_... */
+    uint64_t fault_begin, fault_end;        /**< [ticks] */
+    mct_reading queue[MCT_MAX_LATENCY + 1]; /**< readings of the last ticks, by tick modulo the size */
+    mct_reading last;                       /**< last delivered */
+    uint32_t silent_ticks;                  /**< since something was delivered */
     /* motor driver */
-    mct_real input;                            /**< held until the next write */
+    mct_real input; /**< held until the next write */
     /* clock */
     bool realtime;
     double dt;

@@ -19,7 +19,8 @@
  * provided that |larger| >= |smaller| (or either is 0) and that nothing overflows. Otherwise *error is still
  * the larger part of the error. Three additions.
  */
-MCT_INLINE mct_real mct_two_sum(mct_real larger, mct_real smaller, mct_real *error) {
+MCT_INLINE mct_real mct_two_sum(mct_real larger, mct_real smaller, mct_real *error)
+{
     const mct_real sum = larger + smaller;
     *error = smaller - (sum - larger);
     return sum;
@@ -32,7 +33,8 @@ MCT_INLINE mct_real mct_two_sum(mct_real larger, mct_real smaller, mct_real *err
  * An increment may exceed the value, as it does when a state passes through zero: the step then loses at
  * most a rounding of the increment, not of the sum so far. Four additions; thread-safe for distinct values.
  */
-MCT_INLINE void mct_add_compensated(mct_real *value, mct_real *compensation, mct_real increment) {
+MCT_INLINE void mct_add_compensated(mct_real *value, mct_real *compensation, mct_real increment)
+{
     *value = mct_two_sum(*value, increment + *compensation, compensation);
 }
 

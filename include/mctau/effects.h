@@ -12,18 +12,22 @@
 #include <stdint.h>
 
 enum {
-    MCT_GRAVITY = 1 << 0,            /**< weight of every particle */
-    MCT_VISCOUS = 1 << 1,            /**< friction torque or force proportional to a coordinate's rate */
-    MCT_COULOMB = 1 << 2,            /**< dry friction of constant size, with sticking (Moreau's impulse clamp) */
-    MCT_MOTOR_QUASI_STATIC = 1 << 3, /**< DC motor with L = 0: the input is a voltage, the current follows at once */
-    MCT_MOTOR_INDUCTIVE = 1 << 4,    /**< DC motor with L di/dt = V - R i - k w: the current is a state */
-    MCT_SATURATION = 1 << 5          /**< the supply bounds the voltage */
+    MCT_GRAVITY = 1 << 0, /**< weight of every particle */
+    MCT_VISCOUS = 1 << 1, /**< friction torque or force proportional to a coordinate's rate */
+    MCT_COULOMB = 1 << 2, /**< dry friction of constant size, with sticking (Moreau's impulse clamp) */
+    MCT_MOTOR_QUASI_STATIC =
+        1 << 3, /**< DC motor with L = 0: the input is a voltage, the current follows at once */
+    MCT_MOTOR_INDUCTIVE = 1 << 4, /**< DC motor with L di/dt = V - R i - k w: the current is a state */
+    MCT_SATURATION = 1 << 5       /**< the supply bounds the voltage */
 };
-#define MCT_MOTOR (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
+#define MCT_MOTOR          (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
 #define MCT_KERNEL_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR)
-#define MCT_KERNEL_MASKS 32 /**< kernel masks lie below this; those with both motors are empty */
+#define MCT_KERNEL_MASKS   32 /**< kernel masks lie below this; those with both motors are empty */
 
-/** One effect as a scene names it. `bits` lists the mask of each choice; a switch has the choices false and true. */
+/**
+ * One effect as a scene names it. `bits` lists the mask of each choice; a switch has the choices false and
+ * true.
+ */
 typedef struct {
     const char *name;
     const char *doc;

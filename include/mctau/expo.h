@@ -1,7 +1,8 @@
 /**
  * @file expo.h
- * Constants of the exponential stepper `expo` for a system whose only nonlinearity is one force on one coordinate, a
- * function of that coordinate: xdot = A x + B u + e g(x_0). The scheme is in src/steppers/expo.h.
+ * Constants of the exponential stepper `expo` for a system whose only nonlinearity is one force on one
+ * coordinate, a function of that coordinate: xdot = A x + B u + e g(x_0). The scheme is in
+ * src/steppers/expo.h.
  */
 #ifndef MCTAU_EXPO_H
 #define MCTAU_EXPO_H
@@ -29,7 +30,7 @@ typedef struct {
  * @param h            step [s]
  * @return MCT_OK, or the status of mct_expm1 when A h is out of reach
  */
-mct_status mct_expo_prepare(mct_expo *expo, int coordinates, int states, const double *A, const double *B, const double *e,
-                            double h);
+mct_status mct_expo_prepare(mct_expo *expo, int coordinates, int states, const double *A, const double *B,
+                            const double *e, double h);
 
 #endif

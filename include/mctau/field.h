@@ -1,7 +1,7 @@
 /**
  * @file field.h
- * The descriptor of one named value. Everything that has to know a name, a unit, a range or a default (scene reader,
- * `mctau list`, telemetry, reports, docs) reads it from here; it is written nowhere else.
+ * The descriptor of one named value. Everything that has to know a name, a unit, a range or a default (scene
+ * reader, `mctau list`, telemetry, reports, docs) reads it from here; it is written nowhere else.
  */
 #ifndef MCTAU_FIELD_H
 #define MCTAU_FIELD_H
@@ -18,19 +18,22 @@ typedef enum {
 } mct_field_kind;
 
 typedef struct {
-    const char *name;           /**< as in scenes, `--set`, CSV headers and telemetry */
-    const char *unit;           /**< SI, "" for a pure number */
-    const char *doc;            /**< one line */
+    const char *name; /**< as in scenes, `--set`, CSV headers and telemetry */
+    const char *unit; /**< SI, "" for a pure number */
+    const char *doc;  /**< one line */
     mct_field_kind kind;
     double minimum;             /**< smallest value allowed (numbers and lists) */
     double maximum;             /**< largest value allowed; for a text its capacity in bytes, NUL included */
     double standard;            /**< the default (numbers, booleans, index of a choice) */
     const char *const *choices; /**< NULL-terminated names of a choice; NULL otherwise */
-    size_t offset;              /**< where the value lies in mct_scene; 0 in tables of a system, which are stored by index */
+    size_t
+        offset; /**< where the value lies in mct_scene; 0 in tables of a system, which are stored by index */
 } mct_field;
 
 /** A real quantity of a system: no choices, stored by its index in the table. */
-#define MCT_QUANTITY(name, unit, minimum, maximum, standard, doc) \
-    { (name), (unit), (doc), MCT_FIELD_REAL, (minimum), (maximum), (standard), NULL, 0 }
+#define MCT_QUANTITY(name, unit, minimum, maximum, standard, doc)                        \
+    {                                                                                    \
+        (name), (unit), (doc), MCT_FIELD_REAL, (minimum), (maximum), (standard), NULL, 0 \
+    }
 
 #endif

@@ -27,7 +27,7 @@
 #include "mctau/real.h"
 #include "mctau/status.h"
 
-#define MCT_GAUSS_MAX_PARTICLES 32
+#define MCT_GAUSS_MAX_PARTICLES   32
 #define MCT_GAUSS_MAX_COORDINATES 8
 
 /**

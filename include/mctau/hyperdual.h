@@ -25,19 +25,23 @@ typedef struct {
 } mct_hyperdual;
 
 /** A number that does not depend on what is differentiated. */
-MCT_INLINE mct_hyperdual mct_hyperdual_constant(mct_real value) {
+MCT_INLINE mct_hyperdual mct_hyperdual_constant(mct_real value)
+{
     return (mct_hyperdual){value, MCT_R(0.0), MCT_R(0.0), MCT_R(0.0)};
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_add(mct_hyperdual a, mct_hyperdual b) {
+MCT_INLINE mct_hyperdual mct_hyperdual_add(mct_hyperdual a, mct_hyperdual b)
+{
     return (mct_hyperdual){a.value + b.value, a.e1 + b.e1, a.e2 + b.e2, a.e12 + b.e12};
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_sub(mct_hyperdual a, mct_hyperdual b) {
+MCT_INLINE mct_hyperdual mct_hyperdual_sub(mct_hyperdual a, mct_hyperdual b)
+{
     return (mct_hyperdual){a.value - b.value, a.e1 - b.e1, a.e2 - b.e2, a.e12 - b.e12};
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_mul(mct_hyperdual a, mct_hyperdual b) {
+MCT_INLINE mct_hyperdual mct_hyperdual_mul(mct_hyperdual a, mct_hyperdual b)
+{
     return (mct_hyperdual){
         a.value * b.value,
         a.value * b.e1 + a.e1 * b.value,
@@ -46,11 +50,13 @@ MCT_INLINE mct_hyperdual mct_hyperdual_mul(mct_hyperdual a, mct_hyperdual b) {
     };
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_scale(mct_real factor, mct_hyperdual a) {
+MCT_INLINE mct_hyperdual mct_hyperdual_scale(mct_real factor, mct_hyperdual a)
+{
     return (mct_hyperdual){factor * a.value, factor * a.e1, factor * a.e2, factor * a.e12};
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_neg(mct_hyperdual a) {
+MCT_INLINE mct_hyperdual mct_hyperdual_neg(mct_hyperdual a)
+{
     return (mct_hyperdual){-a.value, -a.e1, -a.e2, -a.e12};
 }
 
@@ -60,12 +66,14 @@ MCT_INLINE mct_hyperdual mct_hyperdual_neg(mct_hyperdual a) {
  * acceleration.
  */
 MCT_INLINE mct_hyperdual mct_hyperdual_compose(mct_hyperdual a, mct_real f, mct_real f_prime,
-                                               mct_real f_second) {
+                                               mct_real f_second)
+{
     return (mct_hyperdual){f, f_prime * a.e1, f_prime * a.e2, f_prime * a.e12 + f_second * (a.e1 * a.e2)};
 }
 
 /** Both functions of one angle, for the price of one mct_sincos(). */
-MCT_INLINE void mct_hyperdual_sincos(mct_hyperdual angle, mct_hyperdual *sine, mct_hyperdual *cosine) {
+MCT_INLINE void mct_hyperdual_sincos(mct_hyperdual angle, mct_hyperdual *sine, mct_hyperdual *cosine)
+{
     mct_real s;
     mct_real c;
     mct_sincos(angle.value, &s, &c);
@@ -73,14 +81,16 @@ MCT_INLINE void mct_hyperdual_sincos(mct_hyperdual angle, mct_hyperdual *sine, m
     *cosine = mct_hyperdual_compose(angle, c, -s, -c);
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_sin(mct_hyperdual angle) {
+MCT_INLINE mct_hyperdual mct_hyperdual_sin(mct_hyperdual angle)
+{
     mct_hyperdual sine;
     mct_hyperdual cosine;
     mct_hyperdual_sincos(angle, &sine, &cosine);
     return sine;
 }
 
-MCT_INLINE mct_hyperdual mct_hyperdual_cos(mct_hyperdual angle) {
+MCT_INLINE mct_hyperdual mct_hyperdual_cos(mct_hyperdual angle)
+{
     mct_hyperdual sine;
     mct_hyperdual cosine;
     mct_hyperdual_sincos(angle, &sine, &cosine);

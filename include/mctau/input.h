@@ -17,9 +17,9 @@ typedef struct {
     int32_t kind;
     mct_real value;
     mct_real amplitude;
-    double phase_per_tick;                 /**< [rad] */
+    double phase_per_tick; /**< [rad] */
     int32_t step_count;
-    uint64_t step_ticks[MCT_MAX_LIST];     /**< first tick of each step */
+    uint64_t step_ticks[MCT_MAX_LIST]; /**< first tick of each step */
     mct_real step_values[MCT_MAX_LIST];
     mct_samples samples;
 } mct_input;

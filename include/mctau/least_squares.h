@@ -8,7 +8,7 @@
 #include "mctau/real.h"
 #include "mctau/status.h"
 
-#define MCT_LEAST_SQUARES_MAX_ROWS 96
+#define MCT_LEAST_SQUARES_MAX_ROWS    96
 #define MCT_LEAST_SQUARES_MAX_COLUMNS 8
 
 /**

@@ -33,12 +33,13 @@ typedef struct {
  * @param why      a sentence on failure
  * @return MCT_OK, or what mct_controller_init says
  */
-mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring, mct_samples samples,
-                         mct_message *why);
+mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring,
+                         mct_samples samples, mct_message *why);
 
 /**
- * One tick, ending where the next begins. A HAL that cannot read or write latches MCT_FAULT_HAL; the loop goes on at zero
- * volts. Bounded work but for the HAL's wait_tick. Cost on a laptop, plant included: below 400 ns.
+ * One tick, ending where the next begins. A HAL that cannot read or write latches MCT_FAULT_HAL; the loop
+ * goes on at zero volts. Bounded work but for the HAL's wait_tick. Cost on a laptop, plant included: below
+ * 400 ns.
  */
 void mct_loop_tick(mct_loop *loop);
 

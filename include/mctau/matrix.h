@@ -18,20 +18,24 @@
 /** Most squarings in mct_expm1(), so the largest norm is 2^63. */
 #define MCT_EXPM1_MAX_SQUARINGS 64
 
-MCT_INLINE double mct_abs(double x) {
+MCT_INLINE double mct_abs(double x)
+{
     return x < 0.0 ? -x : x;
 }
 
-MCT_INLINE double mct_min(double a, double b) {
+MCT_INLINE double mct_min(double a, double b)
+{
     return b < a ? b : a;
 }
 
-MCT_INLINE double mct_max(double a, double b) {
+MCT_INLINE double mct_max(double a, double b)
+{
     return b > a ? b : a;
 }
 
 /** Neither infinite nor NaN. */
-MCT_INLINE bool mct_is_finite(double x) {
+MCT_INLINE bool mct_is_finite(double x)
+{
     return x - x == 0.0;
 }
 
@@ -42,13 +46,13 @@ MCT_INLINE bool mct_is_finite(double x) {
 double mct_sqrt(double x);
 
 /** The square root in the core's precision; correctly rounded in single precision, too. */
-MCT_INLINE mct_real mct_sqrt_real(mct_real x) {
+MCT_INLINE mct_real mct_sqrt_real(mct_real x)
+{
     return (mct_real)mct_sqrt((double)x);
 }
 
 /** product = a b, for a (rows x inner), b (inner x columns); the product must not overlap a or b. */
-void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b,
-                         double *product);
+void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b, double *product);
 
 /** transposed = a', for a (rows x columns); must not overlap. */
 void mct_matrix_transpose(int rows, int columns, const double *a, double *transposed);

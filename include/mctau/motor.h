@@ -1,6 +1,7 @@
 /**
  * @file motor.h
- * Constants of a DC motor acting on one coordinate, precomputed for a step. The equations are in src/effects/motor.h.
+ * Constants of a DC motor acting on one coordinate, precomputed for a step. The equations are in
+ * src/effects/motor.h.
  */
 #ifndef MCTAU_MOTOR_H
 #define MCTAU_MOTOR_H
@@ -18,11 +19,11 @@ typedef struct {
     mct_real force_per_volt;     /**< at rest, L = 0 [N/V] or [N m/V] */
     mct_real damping;            /**< of the back-emf, L = 0 [N s/m] or [N m s] */
     /* exact step of the current, for the step h of prepare */
-    mct_real mean_from_current;  /**< phi_1 */
-    mct_real mean_from_voltage;  /**< (h/L) phi_2 [S] */
-    mct_real mean_from_change;   /**< (h/L) phi_3 [S] */
-    mct_real end_from_current;   /**< e^-z - 1 */
-    mct_real end_from_voltage;   /**< (h/L) phi_1 [S] */
+    mct_real mean_from_current; /**< phi_1 */
+    mct_real mean_from_voltage; /**< (h/L) phi_2 [S] */
+    mct_real mean_from_change;  /**< (h/L) phi_3 [S] */
+    mct_real end_from_current;  /**< e^-z - 1 */
+    mct_real end_from_voltage;  /**< (h/L) phi_1 [S] */
 } mct_motor;
 
 /**

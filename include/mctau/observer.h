@@ -2,13 +2,14 @@
  * @file observer.h
  * Positions and rates from encoder counts.
  *
- * A tracking loop per encoder, fed forward with the model's acceleration: over a tick the rate is advanced by h a, the
- * deviation e between count and model by what the count moved and the model did not, and both are corrected by the gains of
- * a double pole at the bandwidth,
- *     e- = e + counts * unit - h rate - h^2/2 a,   e = p^2 e-,   rate += h a + (1 - p)^2 e- / h,   p = exp(-bandwidth h).
- * Position is the count less e, so it never drifts from the encoder; the difference of counts is taken modulo the counter,
- * so it is exact across a wrap. With a right model there is no lag, and a count's step moves the rate by
- * (1 - p)^2 unit / h only (0.004 rad/s at 4096 counts a turn, 1 kHz and 50 rad/s).
+ * A tracking loop per encoder, fed forward with the model's acceleration: over a tick the rate is advanced by
+ * h a, the deviation e between count and model by what the count moved and the model did not, and both are
+ * corrected by the gains of a double pole at the bandwidth,
+ *     e- = e + counts * unit - h rate - h^2/2 a,   e = p^2 e-,   rate += h a + (1 - p)^2 e- / h,
+ *     p = exp(-bandwidth h).
+ * Position is the count less e, so it never drifts from the encoder; the difference of counts is taken modulo
+ * the counter, so it is exact across a wrap. With a right model there is no lag, and a count's step moves the
+ * rate by (1 - p)^2 unit / h only (0.004 rad/s at 4096 counts a turn, 1 kHz and 50 rad/s).
  * Source: alpha-beta filter, critically damped (Benedict, Bordner 1962), with model feed-forward.
  */
 #ifndef MCTAU_OBSERVER_H
@@ -37,11 +38,12 @@ typedef struct {
     mct_real keep;      /**< p^2 */
     mct_real rate_gain; /**< (1 - p)^2 / h [1/s] */
     mct_encoder_track encoders[MCT_MAX_COORDINATES];
-    mct_real gravity_slope; /**< model's upright acceleration per sine of the angle; 0 when nothing is learned [rad/s^2] */
-    mct_real gravity;       /**< model's gravity at the last tick [rad/s^2] */
-    mct_real excess;        /**< gravity acts (1 + excess) times as strongly as in the model; learned by the controller */
+    /** Model's upright acceleration per sine of the angle; 0 when nothing is learned [rad/s^2]. */
+    mct_real gravity_slope;
+    mct_real gravity; /**< model's gravity at the last tick [rad/s^2] */
+    mct_real excess;  /**< gravity acts (1 + excess) times as in the model; learned by the controller */
     mct_real correction[MCT_MAX_COORDINATES]; /**< what the last reading added to the model's acceleration */
-    mct_real x[2 * MCT_MAX_COORDINATES]; /**< estimate: coordinates (angles within +-pi), rates */
+    mct_real x[2 * MCT_MAX_COORDINATES];      /**< estimate: coordinates (angles within +-pi), rates */
 } mct_observer;
 
 /**

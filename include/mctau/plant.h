@@ -23,20 +23,23 @@ typedef struct {
     mct_state state;
     uint64_t tick;
     uint64_t rejected_inputs; /**< inputs that were not finite: the last valid one was held */
-    uint64_t diverged_ticks;  /**< ticks whose result was not finite or beyond MCT_STATE_BOUND: the state before was kept */
+    /** Ticks whose result was not finite or beyond MCT_STATE_BOUND: the state before was kept. */
+    uint64_t diverged_ticks;
     mct_constants constants;
 } mct_plant;
 
 /**
  * Prepares a plant at the scene's initial state: constants in double, kernel chosen.
  * @param why  a sentence on failure
- * @return MCT_OK; MCT_ERROR_UNSUITED when the stepper does not suit system and effects; else what prepare says
+ * @return MCT_OK; MCT_ERROR_UNSUITED when the stepper does not suit system and effects; else what prepare
+ * says
  */
 mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message *why);
 
 /**
- * Advances by one tick under a held input. An input that is not finite is refused and the last one held; a result that is
- * not finite or has blown up is refused and the state kept. Both are counted. Cost: the kernel, and some 5 ns. Not thread-safe per plant.
+ * Advances by one tick under a held input. An input that is not finite is refused and the last one held; a
+ * result that is not finite or has blown up is refused and the state kept. Both are counted. Cost: the
+ * kernel, and some 5 ns. Not thread-safe per plant.
  */
 void mct_plant_step(mct_plant *plant, mct_real input);
 

@@ -1,6 +1,7 @@
 /**
  * @file reaction_wheel.h
- * Constants of the reaction wheel pendulum, precomputed by mct_reaction_wheel.prepare. Equations in src/systems/reaction_wheel.c.
+ * Constants of the reaction wheel pendulum, precomputed by mct_reaction_wheel.prepare. Equations in
+ * src/systems/reaction_wheel.c.
  */
 #ifndef MCTAU_REACTION_WHEEL_H
 #define MCTAU_REACTION_WHEEL_H
@@ -23,18 +24,18 @@ typedef struct {
     mct_real coulomb[2];         /**< dry friction [N m] */
     mct_real inverse_arm;        /**< 1 / arm_inertia */
     mct_real inverse_wheel;      /**< 1 / wheel_inertia */
-    mct_symmetric2 inverse_mass;   /**< M^-1 */
-    mct_symmetric2 implicit;       /**< (M + h D)^-1, for euler */
-    mct_symmetric2 symmetric;      /**< (M + h D / 2)^-1, the averaged motor included, for leap */
+    mct_symmetric2 inverse_mass; /**< M^-1 */
+    mct_symmetric2 implicit;     /**< (M + h D)^-1, for euler */
+    mct_symmetric2 symmetric;    /**< (M + h D / 2)^-1, the averaged motor included, for leap */
     mct_motor motor;
     mct_expo expo;
     /* geometry of the equivalent particles */
-    mct_real arm_length;         /**< l [m] */
-    mct_real wheel_radius;       /**< of the hoop, sqrt(I_w / m_w) [m] */
-    mct_real arm_radius;         /**< of the arm's two particles, at +-arm_radius [m] */
-    mct_real wheel_particle_mass;   /**< each of two [kg] */
-    mct_real outer_arm_mass;        /**< at +arm_radius [kg] */
-    mct_real inner_arm_mass;        /**< at -arm_radius [kg] */
+    mct_real arm_length;          /**< l [m] */
+    mct_real wheel_radius;        /**< of the hoop, sqrt(I_w / m_w) [m] */
+    mct_real arm_radius;          /**< of the arm's two particles, at +-arm_radius [m] */
+    mct_real wheel_particle_mass; /**< each of two [kg] */
+    mct_real outer_arm_mass;      /**< at +arm_radius [kg] */
+    mct_real inner_arm_mass;      /**< at -arm_radius [kg] */
 } mct_reaction_wheel_constants;
 
 #endif

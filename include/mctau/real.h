@@ -27,11 +27,11 @@
 #if MCT_REAL_IS_FLOAT
 typedef float mct_real;
 #define MCT_REAL_EPSILON FLT_EPSILON
-#define MCT_REAL_MAX FLT_MAX
+#define MCT_REAL_MAX     FLT_MAX
 #else
 typedef double mct_real;
 #define MCT_REAL_EPSILON DBL_EPSILON
-#define MCT_REAL_MAX DBL_MAX
+#define MCT_REAL_MAX     DBL_MAX
 #endif
 
 /** A literal in the core's precision: `MCT_R(0.5)` keeps a float target free of double arithmetic. */

@@ -8,25 +8,28 @@
 #include "hal/hal.h"
 #include "mctau/controller.h"
 
-/** Everything of one tick: all inputs, so that it can be replayed, and all results, so that a replay can be checked. */
+/**
+ * Everything of one tick: all inputs, so that it can be replayed, and all results, so that a replay can be
+ * checked.
+ */
 typedef struct {
     uint64_t tick;
-    mct_state plant;                                  /**< simulated state at the tick; zero on real hardware */
+    mct_state plant; /**< simulated state at the tick; zero on real hardware */
     mct_reading reading;
-    mct_real estimate[2 * MCT_MAX_COORDINATES];       /**< zero in open loop */
-    mct_real wanted;                                  /**< input asked for [V] */
-    mct_real applied;                                 /**< input let through [V] */
+    mct_real estimate[2 * MCT_MAX_COORDINATES]; /**< zero in open loop */
+    mct_real wanted;                            /**< input asked for [V] */
+    mct_real applied;                           /**< input let through [V] */
     mct_mode mode;
-    uint32_t faults;                                  /**< latched, bit (1 << mct_fault) */
-    uint32_t late_us;                                 /**< how late the tick began */
-    uint64_t dropped;                                 /**< records lost so far because the ring was full */
+    uint32_t faults;  /**< latched, bit (1 << mct_fault) */
+    uint32_t late_us; /**< how late the tick began */
+    uint64_t dropped; /**< records lost so far because the ring was full */
 } mct_record;
 
 #define MCT_RING_SIZE 4096 /**< records, a power of two: 4 s at 1 kHz */
 
 /**
- * A queue from one producer (the loop) to one consumer (telemetry). Neither ever waits; a push to a full ring is counted
- * and lost. Zero-initialise before use.
+ * A queue from one producer (the loop) to one consumer (telemetry). Neither ever waits; a push to a full ring
+ * is counted and lost. Zero-initialise before use.
  */
 typedef struct {
     uint64_t head;    /**< records pushed; written by the producer only */

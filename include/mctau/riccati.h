@@ -8,8 +8,8 @@
 #include "mctau/real.h"
 #include "mctau/status.h"
 
-#define MCT_RICCATI_MAX_STATES 8
-#define MCT_RICCATI_MAX_INPUTS 2
+#define MCT_RICCATI_MAX_STATES     8
+#define MCT_RICCATI_MAX_INPUTS     2
 #define MCT_RICCATI_MAX_ITERATIONS 60
 
 /**

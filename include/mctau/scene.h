@@ -1,6 +1,7 @@
 /**
  * @file scene.h
- * A scene: what is simulated and controlled, as plain data. The reader turns text (a strict subset of TOML) into it.
+ * A scene: what is simulated and controlled, as plain data. The reader turns text (a strict subset of TOML)
+ *   into it.
  *
  * Everything in a scene is double or int32_t whatever the core's precision, so that one reader serves both.
  */
@@ -137,16 +138,16 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
  * whole number of ticks; and that every value is within its range. Called by mct_scene_read; call it after
  * changing a scene by hand.
  * @param why  on failure one sentence: "table.key: found ...; allowed ..."; may be NULL
- * @return MCT_OK; MCT_ERROR_RANGE, MCT_ERROR_BOUND (a single value), MCT_ERROR_UNSUITED (values that do not go
- *         together)
+ * @return MCT_OK; MCT_ERROR_RANGE, MCT_ERROR_BOUND (a single value), MCT_ERROR_UNSUITED (values that do not
+ *         go together)
  */
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why);
 
 /**
- * Draws the parameters of a plant that differs from its model: each parameter that is not known exactly anyhow
- * (gravity, lengths, gear ratio, supply voltage are) is multiplied by 1 + spread * u, u uniform in [-1, 1), a function of (variation_seed, index
- * of the parameter) alone, and kept within its range. The controller keeps the scene as written: it does not
- * know.
+ * Draws the parameters of a plant that differs from its model: each parameter that is not known exactly
+ * anyhow (gravity, lengths, gear ratio, supply voltage are) is multiplied by 1 + spread * u, u uniform in
+ * [-1, 1), a function of (variation_seed, index of the parameter) alone, and kept within its range. The
+ * controller keeps the scene as written: it does not know.
  * @param scene  checked
  * @param plant  written: the scene with other parameters; may be the scene itself
  */

@@ -30,15 +30,16 @@
 #include "mctau/real.h"
 
 /** Sine and cosine of `quadrant` pi/2 + (r + tail), for |r| <= 0.79 and a tail of the size of a rounding. */
-MCT_INLINE void mct_sincos_quadrant_f64(double r, double tail, uint64_t quadrant, double *s, double *c) {
+MCT_INLINE void mct_sincos_quadrant_f64(double r, double tail, uint64_t quadrant, double *s, double *c)
+{
     const double z = r * r;
     const double zz = z * z;
-    const double p = (-0x1.5555555555547p-3 + z * 0x1.111111110f595p-7)
-                     + zz * ((-0x1.a01a019bb4435p-13 + z * 0x1.71de352632efbp-19)
-                             + zz * (-0x1.ae5e25f815641p-26 + z * 0x1.5d8040d463a9ap-33));
-    const double q = (0x1.555555555554ap-5 + z * -0x1.6c16c16c14df7p-10)
-                     + zz * ((0x1.a01a019c5abcap-16 + z * -0x1.27e4f7cbcb656p-22)
-                             + zz * (0x1.1ee9c216282b1p-29 + z * -0x1.8f99248d576efp-37));
+    const double p = (-0x1.5555555555547p-3 + z * 0x1.111111110f595p-7) +
+                     zz * ((-0x1.a01a019bb4435p-13 + z * 0x1.71de352632efbp-19) +
+                           zz * (-0x1.ae5e25f815641p-26 + z * 0x1.5d8040d463a9ap-33));
+    const double q = (0x1.555555555554ap-5 + z * -0x1.6c16c16c14df7p-10) +
+                     zz * ((0x1.a01a019c5abcap-16 + z * -0x1.27e4f7cbcb656p-22) +
+                           zz * (0x1.1ee9c216282b1p-29 + z * -0x1.8f99248d576efp-37));
     const double half = 0.5 * z;
     const double rest = 1.0 - half; /* what it drops comes back with the small terms */
     const double sine = r + ((r * z) * p + tail * rest);
@@ -50,7 +51,8 @@ MCT_INLINE void mct_sincos_quadrant_f64(double r, double tail, uint64_t quadrant
 }
 
 /** The same in single precision. */
-MCT_INLINE void mct_sincos_quadrant_f32(float r, float tail, uint32_t quadrant, float *s, float *c) {
+MCT_INLINE void mct_sincos_quadrant_f32(float r, float tail, uint32_t quadrant, float *s, float *c)
+{
     const float z = r * r;
     const float zz = z * z;
     const float p = (-0x1.555544p-3f + z * 0x1.1106c6p-7f) + zz * -0x1.991c2cp-13f;
@@ -66,7 +68,8 @@ MCT_INLINE void mct_sincos_quadrant_f32(float r, float tail, uint32_t quadrant, 
 }
 
 /** Sine and cosine of x [rad]. Range and error: see above. Thread-safe. */
-MCT_INLINE void mct_sincos_f64(double x, double *s, double *c) {
+MCT_INLINE void mct_sincos_f64(double x, double *s, double *c)
+{
     const double shift = 0x1.8p52; /* adding it rounds to an integer and leaves that in the low bits */
     const double shifted = x * 0x1.45f306dc9c883p-1 + shift;
     const double n = shifted - shift;
@@ -83,7 +86,8 @@ MCT_INLINE void mct_sincos_f64(double x, double *s, double *c) {
 }
 
 /** Sine and cosine of x [rad] in single precision. Range and error: see above. Thread-safe. */
-MCT_INLINE void mct_sincos_f32(float x, float *s, float *c) {
+MCT_INLINE void mct_sincos_f32(float x, float *s, float *c)
+{
     const float shift = 0x1.8p23f;
     const float shifted = x * 0x1.45f306p-1f + shift;
     const float n = shifted - shift;
@@ -102,7 +106,8 @@ MCT_INLINE void mct_sincos_f32(float x, float *s, float *c) {
  * sine is 0 at no turn and at half a turn, the cosine at a quarter and at three, whichever way they are
  * reached.
  */
-MCT_INLINE int32_t mct_turn32_rest(int32_t binary_angle, uint32_t *quadrant) {
+MCT_INLINE int32_t mct_turn32_rest(int32_t binary_angle, uint32_t *quadrant)
+{
     const uint32_t eighth = UINT32_C(0x20000000);
     const uint32_t advanced = (uint32_t)binary_angle + eighth;
     *quadrant = advanced >> 30;
@@ -110,7 +115,8 @@ MCT_INLINE int32_t mct_turn32_rest(int32_t binary_angle, uint32_t *quadrant) {
 }
 
 /** Sine and cosine of a binary angle, any of the 2^32 to one turn, in single precision. Thread-safe. */
-MCT_INLINE void mct_sincos_turn32(int32_t binary_angle, float *s, float *c) {
+MCT_INLINE void mct_sincos_turn32(int32_t binary_angle, float *s, float *c)
+{
     uint32_t quadrant;
     const int32_t rest = mct_turn32_rest(binary_angle, &quadrant);
     const int32_t low = ((rest + 0x8000) & 0xffff) - 0x8000;
@@ -122,7 +128,8 @@ MCT_INLINE void mct_sincos_turn32(int32_t binary_angle, float *s, float *c) {
 }
 
 /** The same in double precision. */
-MCT_INLINE void mct_sincos_turn32_f64(int32_t binary_angle, double *s, double *c) {
+MCT_INLINE void mct_sincos_turn32_f64(int32_t binary_angle, double *s, double *c)
+{
     uint32_t quadrant;
     const double rest = (double)mct_turn32_rest(binary_angle, &quadrant);
     const double coarse = rest * 0x1.921fb4p-30; /* 23 bits by 30: exact */
@@ -133,7 +140,8 @@ MCT_INLINE void mct_sincos_turn32_f64(int32_t binary_angle, double *s, double *c
 }
 
 /** Sine and cosine of x [rad] in the core's precision. */
-MCT_INLINE void mct_sincos(mct_real x, mct_real *s, mct_real *c) {
+MCT_INLINE void mct_sincos(mct_real x, mct_real *s, mct_real *c)
+{
 #if MCT_REAL_IS_FLOAT
     mct_sincos_f32(x, s, c);
 #else
@@ -142,7 +150,8 @@ MCT_INLINE void mct_sincos(mct_real x, mct_real *s, mct_real *c) {
 }
 
 /** Sine and cosine of a binary angle, 2^32 to one turn, in the core's precision. */
-MCT_INLINE void mct_sincos_turn(int32_t binary_angle, mct_real *s, mct_real *c) {
+MCT_INLINE void mct_sincos_turn(int32_t binary_angle, mct_real *s, mct_real *c)
+{
 #if MCT_REAL_IS_FLOAT
     mct_sincos_turn32(binary_angle, s, c);
 #else

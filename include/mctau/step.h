@@ -8,9 +8,10 @@
 #include "mctau/real.h"
 
 typedef struct {
-    mct_real h;         /**< nearest to the step asked for [s] */
-    mct_real half;      /**< h / 2 [s] */
-    mct_real remainder; /**< what rounding has left out, relative to h: float's 1e-3 is off by 5e-8, 4 ms a day */
+    mct_real h;    /**< nearest to the step asked for [s] */
+    mct_real half; /**< h / 2 [s] */
+    /** What rounding has left out, relative to h: float's 1e-3 is off by 5e-8, 4 ms a day. */
+    mct_real remainder;
 } mct_step;
 
 /** The step of `h` seconds; h above 0. */

@@ -7,7 +7,14 @@
 
 #include "mctau/real.h"
 
-enum { MCT_STEPPER_SEED, MCT_STEPPER_EULER, MCT_STEPPER_LEAP, MCT_STEPPER_RK4, MCT_STEPPER_EXPO, MCT_STEPPER_COUNT };
+enum {
+    MCT_STEPPER_SEED,
+    MCT_STEPPER_EULER,
+    MCT_STEPPER_LEAP,
+    MCT_STEPPER_RK4,
+    MCT_STEPPER_EXPO,
+    MCT_STEPPER_COUNT
+};
 
 typedef struct {
     const char *name;

@@ -1,7 +1,8 @@
 /**
  * @file supervisor.h
- * The one gate between a wanted voltage and the motor: limits, arming, stale sensors, latched faults. Any doubt ends at zero
- * volts, with its reason named and counted; a latched fault stays until mct_supervisor_rearm.
+ * The one gate between a wanted voltage and the motor: limits, arming, stale sensors, latched faults. Any
+ * doubt ends at zero volts, with its reason named and counted; a latched fault stays until
+ * mct_supervisor_rearm.
  */
 #ifndef MCTAU_SUPERVISOR_H
 #define MCTAU_SUPERVISOR_H
@@ -10,15 +11,15 @@
 #include "mctau/scene.h"
 
 typedef enum {
-    MCT_FAULT_SENSOR_INVALID,  /**< a sensor gave a value that is not finite */
-    MCT_FAULT_SENSOR_STALE,    /**< no valid feedback for too long */
-    MCT_FAULT_SENSOR_FROZEN,   /**< the motor was driven but its encoder did not move */
-    MCT_FAULT_ESTIMATE,        /**< an estimate was not finite */
-    MCT_FAULT_COMMAND,         /**< a wanted voltage was not finite */
-    MCT_FAULT_TRACK_END,       /**< the cart left its track */
-    MCT_FAULT_OVERSPEED,       /**< a rate beyond the scene's limit */
-    MCT_FAULT_HAL,             /**< the HAL could not read or write */
-    MCT_FAULT_STOPPED,         /**< stopped from outside */
+    MCT_FAULT_SENSOR_INVALID, /**< a sensor gave a value that is not finite */
+    MCT_FAULT_SENSOR_STALE,   /**< no valid feedback for too long */
+    MCT_FAULT_SENSOR_FROZEN,  /**< the motor was driven but its encoder did not move */
+    MCT_FAULT_ESTIMATE,       /**< an estimate was not finite */
+    MCT_FAULT_COMMAND,        /**< a wanted voltage was not finite */
+    MCT_FAULT_TRACK_END,      /**< the cart left its track */
+    MCT_FAULT_OVERSPEED,      /**< a rate beyond the scene's limit */
+    MCT_FAULT_HAL,            /**< the HAL could not read or write */
+    MCT_FAULT_STOPPED,        /**< stopped from outside */
     MCT_FAULT_COUNT
 } mct_fault;
 
@@ -30,21 +31,21 @@ const char *mct_fault_text(mct_fault fault);
 
 typedef struct {
     const mct_system *system;
-    bool observed;                      /**< there are estimates to watch */
-    bool armed;                         /**< a first valid reading has come, and no fault is latched */
-    uint32_t latched;                   /**< bit (1 << fault) */
-    uint64_t counts[MCT_FAULT_COUNT];   /**< ticks on which a fault was seen */
-    uint64_t derated_ticks;             /**< voltage reduced because feedback was late */
-    uint64_t limited_ticks;             /**< voltage cut at the limit */
-    mct_real limit;                     /**< [V]; the largest finite number for a plain force */
-    mct_real watch_limit;               /**< input above which the encoder must move */
-    uint32_t derate_us;                 /**< age from which the voltage is reduced */
-    uint32_t stale_us;                  /**< age from which it is zero */
-    uint32_t frozen_ticks;              /**< driven without motion so far */
-    uint32_t frozen_limit;              /**< how many are too many */
-    int32_t last_counts;                /**< of the driven coordinate */
-    mct_real track_half_length;         /**< [m], of a driven length */
-    mct_real overspeed;                 /**< [rad/s] of the driven angle */
+    bool observed;                    /**< there are estimates to watch */
+    bool armed;                       /**< a first valid reading has come, and no fault is latched */
+    uint32_t latched;                 /**< bit (1 << fault) */
+    uint64_t counts[MCT_FAULT_COUNT]; /**< ticks on which a fault was seen */
+    uint64_t derated_ticks;           /**< voltage reduced because feedback was late */
+    uint64_t limited_ticks;           /**< voltage cut at the limit */
+    mct_real limit;                   /**< [V]; the largest finite number for a plain force */
+    mct_real watch_limit;             /**< input above which the encoder must move */
+    uint32_t derate_us;               /**< age from which the voltage is reduced */
+    uint32_t stale_us;                /**< age from which it is zero */
+    uint32_t frozen_ticks;            /**< driven without motion so far */
+    uint32_t frozen_limit;            /**< how many are too many */
+    int32_t last_counts;              /**< of the driven coordinate */
+    mct_real track_half_length;       /**< [m], of a driven length */
+    mct_real overspeed;               /**< [rad/s] of the driven angle */
 } mct_supervisor;
 
 void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene);
@@ -56,12 +57,16 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene);
  * @param wanted    [V]
  * @return wanted, limited, or 0. Always finite, never beyond the limit. Cost: some 10 ns.
  */
-mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate, mct_real wanted);
+mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate,
+                             mct_real wanted);
 
 /** Latches a fault that somebody else saw. */
 void mct_supervisor_fault(mct_supervisor *supervisor, mct_fault fault);
 
-/** Clears latched faults. The motor is driven again from the next valid reading on; a cause that persists latches again. */
+/**
+ * Clears latched faults. The motor is driven again from the next valid reading on; a cause that persists
+ * latches again.
+ */
 void mct_supervisor_rearm(mct_supervisor *supervisor);
 
 #endif

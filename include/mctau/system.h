@@ -1,9 +1,11 @@
 /**
  * @file system.h
- * What a system is: a descriptor (names, units, ranges, defaults) and its closed form M(q) a + C(q,v) v = tau.
+ * What a system is: a descriptor (names, units, ranges, defaults) and its closed form M(q) a + C(q,v) v =
+ *   tau.
  *
- * Conventions: SI units, radians; axes 1 right, 2 up, 3 to the viewer. States are ordered coordinates q, rates v, then the
- * motor's current [A] when the motor is inductive. The input is a voltage [V] with a motor, else a force [N] or torque [N m].
+ * Conventions: SI units, radians; axes 1 right, 2 up, 3 to the viewer. States are ordered coordinates q,
+ * rates v, then the motor's current [A] when the motor is inductive. The input is a voltage [V] with a motor,
+ * else a force [N] or torque [N m].
  */
 #ifndef MCTAU_SYSTEM_H
 #define MCTAU_SYSTEM_H
@@ -14,10 +16,10 @@
 #include "mctau/real.h"
 #include "mctau/status.h"
 
-#define MCT_MAX_COORDINATES 2                        /**< of a system with a kernel */
-#define MCT_MAX_STATES (2 * MCT_MAX_COORDINATES + 1) /**< coordinates, rates, current */
-#define MCT_MAX_PARAMETERS 24
-#define MCT_MAX_PARTICLES 4
+#define MCT_MAX_COORDINATES 2                             /**< of a system with a kernel */
+#define MCT_MAX_STATES      (2 * MCT_MAX_COORDINATES + 1) /**< coordinates, rates, current */
+#define MCT_MAX_PARAMETERS  24
+#define MCT_MAX_PARTICLES   4
 
 struct mct_scene;
 struct mct_message;
@@ -28,36 +30,43 @@ typedef struct {
     mct_real M[MCT_MAX_COORDINATES][MCT_MAX_COORDINATES]; /**< mass matrix, symmetric positive definite */
     mct_real position[MCT_MAX_PARTICLES][3];              /**< of each particle [m] */
     mct_real mass[MCT_MAX_PARTICLES];                     /**< [kg] */
-    mct_real potential_energy;                            /**< gravity's, zero at the height of the pivot [J] */
+    mct_real potential_energy; /**< gravity's, zero at the height of the pivot [J] */
     /* of position and velocity */
     mct_real C[MCT_MAX_COORDINATES][MCT_MAX_COORDINATES]; /**< m J' Jdot; only C v is unique */
     mct_real Cv[MCT_MAX_COORDINATES];
     mct_real kinetic_energy;  /**< [J] */
     mct_real magnetic_energy; /**< L i^2 / 2 of an inductive motor [J] */
     /* of position, velocity and input */
-    mct_real tau[MCT_MAX_COORDINATES];                 /**< everything applied, per coordinate */
-    mct_real acceleration[MCT_MAX_COORDINATES];        /**< M^-1 (tau - C v) */
-    mct_real current;                                  /**< of the motor [A] */
-    mct_real constraint_force[MCT_MAX_PARTICLES][3];   /**< e = m xdd - f, f the forces on the particle from outside [N] */
-    mct_real power_input;                              /**< of the force or torque, or V i of the motor's terminals [W] */
-    mct_real power_viscous;                            /**< at most 0 [W] */
-    mct_real power_coulomb;                            /**< at most 0 [W] */
-    mct_real power_resistance;                         /**< - R i^2 [W] */
-    mct_real power_conversion;                         /**< (k_T - k_b) i w: 0 where the motor's constants agree [W] */
+    mct_real tau[MCT_MAX_COORDINATES];          /**< everything applied, per coordinate */
+    mct_real acceleration[MCT_MAX_COORDINATES]; /**< M^-1 (tau - C v) */
+    mct_real current;                           /**< of the motor [A] */
+    mct_real constraint_force[MCT_MAX_PARTICLES]
+                             [3]; /**< e = m xdd - f, f the forces on the particle from outside [N] */
+    mct_real power_input;         /**< of the force or torque, or V i of the motor's terminals [W] */
+    mct_real power_viscous;       /**< at most 0 [W] */
+    mct_real power_coulomb;       /**< at most 0 [W] */
+    mct_real power_resistance;    /**< - R i^2 [W] */
+    mct_real power_conversion;    /**< (k_T - k_b) i w: 0 where the motor's constants agree [W] */
 } mct_evaluation;
 
-/** The system about its upright rest, x = (q, v), with the motor's current eliminated (L = 0): xdot = A x + B input. */
+/**
+ * The system about its upright rest, x = (q, v), with the motor's current eliminated (L = 0): xdot = A x + B
+ * input.
+ */
 typedef struct {
-    int states; /**< 2 n */
+    int states;                                                      /**< 2 n */
     double A[(2 * MCT_MAX_COORDINATES) * (2 * MCT_MAX_COORDINATES)]; /**< row-major, states x states */
     double B[2 * MCT_MAX_COORDINATES];
 } mct_linear_model;
 
-/** State of a simulated system. The exact value of entry i is x[i] + c[i], plus turns[i] whole turns of an angle. */
+/**
+ * State of a simulated system. The exact value of entry i is x[i] + c[i], plus turns[i] whole turns of an
+ * angle.
+ */
 typedef struct {
-    mct_real x[MCT_MAX_STATES];           /**< value, rounded; angles stay within +-2 pi */
-    mct_real c[MCT_MAX_STATES];           /**< what rounding has kept back: compensated summation */
-    int32_t turns[MCT_MAX_COORDINATES];   /**< whole turns taken out of an angle */
+    mct_real x[MCT_MAX_STATES];         /**< value, rounded; angles stay within +-2 pi */
+    mct_real c[MCT_MAX_STATES];         /**< what rounding has kept back: compensated summation */
+    int32_t turns[MCT_MAX_COORDINATES]; /**< whole turns taken out of an angle */
 } mct_state;
 
 /**
@@ -70,10 +79,10 @@ typedef void (*mct_kernel)(const void *constants, mct_state *state, mct_real inp
 typedef struct {
     mct_field position;
     mct_field rate;
-    bool is_angle;           /**< kept within a turn; its encoder counts per turn, else per metre */
-    bool is_cyclic;          /**< no force depends on it: not brought home by a controller */
-    mct_field encoder;       /**< counts per turn or metre, a key of [sensors] */
-    double position_weight;  /**< default deviation that costs a controller as much as the full input */
+    bool is_angle;          /**< kept within a turn; its encoder counts per turn, else per metre */
+    bool is_cyclic;         /**< no force depends on it: not brought home by a controller */
+    mct_field encoder;      /**< counts per turn or metre, a key of [sensors] */
+    double position_weight; /**< default deviation that costs a controller as much as the full input */
     double rate_weight;
 } mct_coordinate;
 
@@ -96,14 +105,22 @@ typedef struct mct_system {
     int resistance_parameter; /**< of the motor's armature [ohm] */
     int inductance_parameter; /**< of the motor's armature [H] */
 
-    /** Checks a scene's parameters against each other and computes all constants, in double, for steps of h seconds. */
+    /**
+     * Checks a scene's parameters against each other and computes all constants, in double, for steps of h
+     * seconds.
+     */
     mct_status (*prepare)(const struct mct_scene *scene, double h, void *constants, struct mct_message *why);
     /** M, C, tau, accelerations, constraint forces, energies and powers at x. */
-    void (*evaluate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input, mct_evaluation *out);
+    void (*evaluate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
+                     mct_evaluation *out);
     /** Accelerations alone, for observers; coulomb is ignored, the motor taken as quasi-static unless off. */
-    void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input, mct_real *a);
-    /** The geometry x = h(q) for the generic Gauss engine (an mct_gauss_place; the context is `constants`). */
-    void (*place)(const void *constants, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3]);
+    void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
+                       mct_real *a);
+    /**
+     * The geometry x = h(q) for the generic Gauss engine (an mct_gauss_place; the context is `constants`).
+     */
+    void (*place)(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3]);
     void (*linearise)(const struct mct_scene *scene, mct_linear_model *model);
     /** Kernels by stepper and kernel mask; NULL where the pair does not fit. */
     mct_kernel (*kernel)(int stepper, uint32_t effects);
@@ -114,8 +131,8 @@ typedef struct mct_system {
 extern const mct_system *const mct_systems[MCT_SYSTEM_COUNT];
 
 /**
- * The effects as they are simulated: a motor that is called inductive but has no inductance is the quasi-static one, which
- * is its limit.
+ * The effects as they are simulated: a motor that is called inductive but has no inductance is the
+ * quasi-static one, which is its limit.
  */
 uint32_t mct_scene_effects(const struct mct_scene *scene);
 

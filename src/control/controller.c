@@ -2,12 +2,12 @@
 
 #include <string.h>
 
+#include "../systems/systems.h"
 #include "mctau/matrix.h"
 #include "mctau/riccati.h"
 #include "mctau/sincos.h"
-#include "../systems/systems.h"
 
-#define LEARNING MCT_R(0.5) /* fraction of a missed energy by which the next approach aims differently */
+#define LEARNING  MCT_R(0.5) /* fraction of a missed energy by which the next approach aims differently */
 #define MAX_MODEL (2 * MCT_MAX_COORDINATES)
 
 /* The linear model, sampled: x+ = A x + B u. */
@@ -50,7 +50,8 @@ static mct_status sample(const mct_scene *scene, sampled_model *model)
     return status;
 }
 
-static mct_status balance_gains(const mct_scene *scene, const sampled_model *model, double limit, mct_real *gains)
+static mct_status balance_gains(const mct_scene *scene, const sampled_model *model, double limit,
+                                mct_real *gains)
 {
     const int n = model->states;
     double Q[MAX_MODEL * MAX_MODEL] = {0};
@@ -69,8 +70,8 @@ static mct_status balance_gains(const mct_scene *scene, const sampled_model *mod
 }
 
 /*
- * Left eigenvector w of the eigenvalue of largest modulus, by squaring A until only that mode is left, scaled by the
- * amplitude that the limited input can still hold.
+ * Left eigenvector w of the eigenvalue of largest modulus, by squaring A until only that mode is left, scaled
+ * by the amplitude that the limited input can still hold.
  */
 static mct_status catch_region(const sampled_model *model, double limit, mct_real *unstable)
 {
@@ -147,7 +148,10 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
     controller->track_damping = (mct_real)(0.5 * frequency);
 }
 
-/* The model's gravity; a prior worth 5 ticks of it, so that noise does not lead astray; and a memory of 2 s of it. */
+/*
+ * The model's gravity; a prior worth 5 ticks of it, so that noise does not lead astray; and a memory of 2 s
+ * of it.
+ */
 static void prepare_learning(mct_controller *controller, const mct_scene *scene)
 {
     const mct_system *system = controller->system;
@@ -171,18 +175,21 @@ static mct_real weighted(const mct_real *weights, const mct_real *x, int states)
 
 mct_real mct_controller_reach(const mct_controller *controller)
 {
-    const mct_real z = weighted(controller->unstable, controller->observer.x, 2 * controller->system->coordinate_count);
+    const mct_real z =
+        weighted(controller->unstable, controller->observer.x, 2 * controller->system->coordinate_count);
     return z < 0 ? -z : z;
 }
 
 /*
  * Fraction of full pumping, from -1 (brake) to 1, that brings the pendulum to the energy of the upright rest.
  *
- * Friction leaves an approach a little short when pumping fades out, or a wrong model takes it over the top. Both are seen in
- * the upper half, as energy that was missing or too much, and shift the energy that the next approach aims at. Near a
- * standstill the direction is kept, so that noise does not make it chatter and a start from rest has one.
+ * Friction leaves an approach a little short when pumping fades out, or a wrong model takes it over the top.
+ * Both are seen in the upper half, as energy that was missing or too much, and shift the energy that the next
+ * approach aims at. Near a standstill the direction is kept, so that noise does not make it chatter and a
+ * start from rest has one.
  */
-static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real weight_moment, mct_real power_per_input)
+static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real weight_moment,
+                        mct_real power_per_input)
 {
     const mct_system *system = controller->system;
     const mct_real *x = controller->observer.x;
@@ -197,7 +204,8 @@ static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real w
     const bool turned = direction != controller->direction;
     const bool crossed = (angle > 0) != (controller->last_angle > 0);
     if (c > 0 && (crossed || turned) && missing * controller->energy_scale < 1) {
-        controller->energy_shift = mct_clamp(controller->energy_shift + LEARNING * missing, controller->largest_shift);
+        controller->energy_shift =
+            mct_clamp(controller->energy_shift + LEARNING * missing, controller->largest_shift);
     }
     controller->direction = direction;
     controller->last_angle = angle;
@@ -205,9 +213,9 @@ static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real w
 }
 
 /*
- * Learns by which fraction gravity's acceleration exceeds the model's: least squares of what the observer still had to correct,
- * on the model's gravity, with a prior of zero; the observer takes it over. A ratio that is off by 10 % would miss the catch
- * region by far.
+ * Learns by which fraction gravity's acceleration exceeds the model's: least squares of what the observer
+ * still had to correct, on the model's gravity, with a prior of zero; the observer takes it over. A ratio
+ * that is off by 10 % would miss the catch region by far.
  */
 static void learn_gravity(mct_controller *controller)
 {
@@ -216,7 +224,8 @@ static void learn_gravity(mct_controller *controller)
     const mct_real information = controller->information + gravity * gravity;
     controller->information = information < controller->memory ? information : controller->memory;
     const mct_real correction = observer->correction[controller->system->upright_coordinate];
-    observer->excess = mct_clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
+    observer->excess =
+        mct_clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
 }
 
 /* The wheel's reaction does the work -torque arm_rate on the arm. */
@@ -228,8 +237,12 @@ static mct_real swing_up_reaction_wheel(mct_controller *controller)
     return controller->limit * pumping(controller, inertia, k->weight_moment, -controller->observer.x[2]);
 }
 
-/* The acceleration wanted of a cart, unless it needs more to stop before nine tenths of the way to the track's end. */
-static mct_real kept_on_track(const mct_controller *controller, mct_real position, mct_real velocity, mct_real wanted)
+/*
+ * The acceleration wanted of a cart, unless it needs more to stop before nine tenths of the way to the
+ * track's end.
+ */
+static mct_real kept_on_track(const mct_controller *controller, mct_real position, mct_real velocity,
+                              mct_real wanted)
 {
     const mct_real way = velocity > 0 ? position : -position;
     const mct_real room = MCT_R(0.9) * controller->track_half_length - way;
@@ -241,7 +254,10 @@ static mct_real kept_on_track(const mct_controller *controller, mct_real positio
     return velocity > 0 ? -stop : stop;
 }
 
-/* The cart's acceleration a does the work -m l cos(th) thd a on the pole; the voltage that gives it follows from the model. */
+/*
+ * The cart's acceleration a does the work -m l cos(th) thd a on the pole; the voltage that gives it follows
+ * from the model.
+ */
 static mct_real swing_up_cart_pole(mct_controller *controller)
 {
     const mct_cart_pole_constants *k = &controller->constants.cart_pole;
@@ -249,9 +265,10 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
     mct_real s, c;
     mct_sincos(x[1], &s, &c);
     const mct_real pump = pumping(controller, k->inertia, k->weight_moment, -c * x[3]);
-    const mct_real wanted = kept_on_track(controller, x[0], x[2],
-                                          controller->swing_acceleration * pump - controller->track_stiffness * x[0] -
-                                              controller->track_damping * x[2]);
+    const mct_real wanted =
+        kept_on_track(controller, x[0], x[2],
+                      controller->swing_acceleration * pump - controller->track_stiffness * x[0] -
+                          controller->track_damping * x[2]);
     mct_real without[MCT_MAX_COORDINATES];
     mct_real with_one_volt[MCT_MAX_COORDINATES];
     controller->system->accelerate(&controller->constants, controller->effects, x, 0, without);
@@ -259,12 +276,16 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
     return (wanted - without[0]) / (with_one_volt[0] - without[0]);
 }
 
-/* How each system is swung up, and whether its law learns the gravity ratio (a cart's pole knows it from its length). */
+/*
+ * How each system is swung up, and whether its law learns the gravity ratio (a cart's pole knows it from its
+ * length).
+ */
 static const struct {
     const mct_system *system;
     mct_real (*swing_up)(mct_controller *controller);
     bool learns_gravity;
-} laws[] = {{&mct_cart_pole, swing_up_cart_pole, false}, {&mct_reaction_wheel, swing_up_reaction_wheel, true}};
+} laws[] = {{&mct_cart_pole, swing_up_cart_pole, false},
+            {&mct_reaction_wheel, swing_up_reaction_wheel, true}};
 
 mct_status mct_controller_init(mct_controller *controller, const mct_scene *scene, mct_message *why)
 {
@@ -316,8 +337,8 @@ mct_status mct_controller_init(mct_controller *controller, const mct_scene *scen
 }
 
 /*
- * Balance. A coordinate on which no force depends has no home of its own: it is measured from where balancing began, which
- * also makes up for an encoder that is off by a few counts, as an integrator would.
+ * Balance. A coordinate on which no force depends has no home of its own: it is measured from where balancing
+ * began, which also makes up for an encoder that is off by a few counts, as an integrator would.
  */
 static mct_real balance(mct_controller *controller)
 {

@@ -5,7 +5,7 @@
 #include "mctau/matrix.h"
 #include "mctau/sincos.h"
 
-#define PI 3.141592653589793238463
+#define PI   3.141592653589793238463
 #define TURN (2 * PI)
 
 void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct_constants *constants)

@@ -6,11 +6,16 @@ static const struct {
     const char *name;
     const char *text;
 } faults[MCT_FAULT_COUNT] = {
-    [MCT_FAULT_SENSOR_INVALID] = {"sensor_invalid", "a sensor gave a value that is not a number; look at its wiring and its drive"},
-    [MCT_FAULT_SENSOR_STALE] = {"sensor_stale", "no valid feedback for too long; look at the drive's message rate and the bus"},
-    [MCT_FAULT_SENSOR_FROZEN] = {"sensor_frozen", "the motor was driven but its encoder did not move; look for a blocked motor or a loose encoder"},
+    [MCT_FAULT_SENSOR_INVALID] =
+        {"sensor_invalid", "a sensor gave a value that is not a number; look at its wiring and its drive"},
+    [MCT_FAULT_SENSOR_STALE] =
+        {"sensor_stale", "no valid feedback for too long; look at the drive's message rate and the bus"},
+    [MCT_FAULT_SENSOR_FROZEN] =
+        {"sensor_frozen",
+         "the motor was driven but its encoder did not move; look for a blocked motor or a loose encoder"},
     [MCT_FAULT_ESTIMATE] = {"estimate_not_finite", "an estimated state was not a number"},
-    [MCT_FAULT_COMMAND] = {"command_not_finite", "the controller or the input asked for a voltage that is not a number"},
+    [MCT_FAULT_COMMAND] = {"command_not_finite",
+                           "the controller or the input asked for a voltage that is not a number"},
     [MCT_FAULT_TRACK_END] = {"track_end", "the cart left its track; look at controller.track_half_length"},
     [MCT_FAULT_OVERSPEED] = {"overspeed", "the driven axis turned faster than controller.overspeed"},
     [MCT_FAULT_HAL] = {"hal_error", "the hardware layer could not read or write"},
@@ -89,7 +94,10 @@ static void watch_estimate(mct_supervisor *supervisor, const mct_real *estimate)
     }
 }
 
-/* A motor under more than half its supply that does not move a count for a quarter of a second is blocked or blind. */
+/*
+ * A motor under more than half its supply that does not move a count for a quarter of a second is blocked or
+ * blind.
+ */
 static void watch_motion(mct_supervisor *supervisor, const mct_reading *reading, mct_real wanted)
 {
     const int32_t counts = reading->counts[supervisor->system->driven_coordinate];
@@ -102,7 +110,8 @@ static void watch_motion(mct_supervisor *supervisor, const mct_reading *reading,
     }
 }
 
-mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate, mct_real wanted)
+mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate,
+                             mct_real wanted)
 {
     if (reading->flags & MCT_READING_INVALID) {
         mct_supervisor_fault(supervisor, MCT_FAULT_SENSOR_INVALID);

@@ -1,9 +1,10 @@
 /*
  * Dry (Coulomb) friction on two coordinates: Moreau's impulse clamp.
  *
- * Rule         of all friction impulses p with |p_i| <= bound_i, take the one that minimises the kinetic energy after the
- *              step, 1/2 p'W p + v'p, with W = M^-1 and v the velocity that the step would end with. A coordinate then
- *              either rests (v_i + (W p)_i = 0) or slides against the full bound: sticking is exact, nothing creeps.
+ * Rule         of all friction impulses p with |p_i| <= bound_i, take the one that minimises the kinetic
+ *              energy after the step, 1/2 p'W p + v'p, with W = M^-1 and v the velocity that the step would
+ *              end with. A coordinate then either rests (v_i + (W p)_i = 0) or slides against the full bound:
+ *              sticking is exact, nothing creeps.
  * Solution     exact and bounded: the minimum lies inside the box or on one of its four sides.
  * Source       the source document has no dry friction but in 8.2; the scheme is Moreau's time stepping.
  * Accuracy     first order where a coordinate starts or stops, second order while it slides or rests.
@@ -15,7 +16,8 @@
 #include "mctau/symmetric2.h"
 
 /* W: inverse mass matrix; v: velocity without friction; bound: largest impulse; p: impulse (out). */
-static inline void mct_friction_impulse(mct_symmetric2 W, const mct_real *v, const mct_real *bound, mct_real *p)
+static inline void mct_friction_impulse(mct_symmetric2 W, const mct_real *v, const mct_real *bound,
+                                        mct_real *p)
 {
     const mct_real det = W.a11 * W.a22 - W.a12 * W.a12;
     const mct_real rest1 = -(W.a22 * v[0] - W.a12 * v[1]) / det;
@@ -46,11 +48,12 @@ static inline void mct_friction_impulse(mct_symmetric2 W, const mct_real *v, con
 }
 
 /*
- * Friction forces at one instant: full size against a motion, and at rest what keeps a coordinate at rest, if it can.
- * W: inverse mass matrix; size: of the friction; v: rates; f: all other forces, C v included; dry: friction (out).
+ * Friction forces at one instant: full size against a motion, and at rest what keeps a coordinate at rest, if
+ * it can. W: inverse mass matrix; size: of the friction; v: rates; f: all other forces, C v included; dry:
+ * friction (out).
  */
-static inline void mct_friction_force(mct_symmetric2 W, const mct_real *size, const mct_real *v, const mct_real *f,
-                                      mct_real *dry)
+static inline void mct_friction_force(mct_symmetric2 W, const mct_real *size, const mct_real *v,
+                                      const mct_real *f, mct_real *dry)
 {
     mct_real moving[2];
     mct_real bound[2];
@@ -66,10 +69,12 @@ static inline void mct_friction_force(mct_symmetric2 W, const mct_real *size, co
 }
 
 /*
- * Corrects the increments dx = (dq, dv) of a step from velocities v, of length h, for dry friction of the given forces.
- * A coordinate that comes to rest gets exactly the velocity 0, and travels h/2 times the velocity it had.
+ * Corrects the increments dx = (dq, dv) of a step from velocities v, of length h, for dry friction of the
+ * given forces. A coordinate that comes to rest gets exactly the velocity 0, and travels h/2 times the
+ * velocity it had.
  */
-static inline void mct_friction_correct(mct_symmetric2 W, const mct_real *force, mct_real h, const mct_real *v, mct_real *dx)
+static inline void mct_friction_correct(mct_symmetric2 W, const mct_real *force, mct_real h,
+                                        const mct_real *v, mct_real *dx)
 {
     const mct_real free_velocity[2] = {v[0] + dx[2], v[1] + dx[3]};
     const mct_real bound[2] = {h * force[0], h * force[1]};

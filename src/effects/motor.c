@@ -26,7 +26,10 @@ mct_status mct_motor_prepare(mct_motor *motor, uint32_t effects, double ratio, d
     if (effects & MCT_MOTOR_QUASI_STATIC) {
         return resistance > 0 ? MCT_OK : MCT_ERROR_RANGE;
     }
-    /* phi_1..phi_3 of -z stand in the first row of the exponential of this matrix, with no cancellation for small z. */
+    /*
+     * phi_1..phi_3 of -z stand in the first row of the exponential of this matrix, with no cancellation for
+     * small z.
+     */
     const double z = h * resistance / inductance;
     const double generator[16] = {-z, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0};
     double phi[16];

@@ -19,8 +19,8 @@
 #include "mctau/system.h"
 
 /*
- * Force of the drive, but for the damping of a quasi-static motor, which joins the viscous one. `current` is that of an
- * inductive motor, or its mean over a step; not read otherwise.
+ * Force of the drive, but for the damping of a quasi-static motor, which joins the viscous one. `current` is
+ * that of an inductive motor, or its mean over a step; not read otherwise.
  */
 MCT_INLINE mct_real mct_motor_force(const mct_motor *motor, unsigned effects, mct_real u, mct_real current)
 {
@@ -31,8 +31,8 @@ MCT_INLINE mct_real mct_motor_force(const mct_motor *motor, unsigned effects, mc
 }
 
 /* Current after a step h of the implicit Euler method, at the old rate. */
-MCT_INLINE mct_real mct_motor_implicit_current(const mct_motor *motor, mct_real h, mct_real voltage, mct_real rate,
-                                               mct_real current)
+MCT_INLINE mct_real mct_motor_implicit_current(const mct_motor *motor, mct_real h, mct_real voltage,
+                                               mct_real rate, mct_real current)
 {
     const mct_real gain = h * motor->inverse_inductance;
     return (current + gain * (voltage - motor->emf * rate)) / (1 + gain * motor->resistance);
@@ -45,33 +45,40 @@ MCT_INLINE mct_real mct_motor_quasi_static_current(const mct_motor *motor, mct_r
 }
 
 /* di/dt of an inductive motor. */
-MCT_INLINE mct_real mct_motor_current_rate(const mct_motor *motor, mct_real voltage, mct_real rate, mct_real current)
+MCT_INLINE mct_real mct_motor_current_rate(const mct_motor *motor, mct_real voltage, mct_real rate,
+                                           mct_real current)
 {
     return (voltage - motor->resistance * current - motor->emf * rate) * motor->inverse_inductance;
 }
 
 /* Mean current over a step, but for the part - mean_from_rate_change * dw, which the caller solves for. */
-MCT_INLINE mct_real mct_motor_mean_current(const mct_motor *motor, mct_real voltage, mct_real rate, mct_real current)
+MCT_INLINE mct_real mct_motor_mean_current(const mct_motor *motor, mct_real voltage, mct_real rate,
+                                           mct_real current)
 {
     return current * motor->mean_from_current + (voltage - motor->emf * rate) * motor->mean_from_voltage;
 }
 
 /* Change of current over a step in which the rate changes by rate_change. */
-MCT_INLINE mct_real mct_motor_current_change(const mct_motor *motor, mct_real voltage, mct_real rate, mct_real current,
-                                             mct_real rate_change)
+MCT_INLINE mct_real mct_motor_current_change(const mct_motor *motor, mct_real voltage, mct_real rate,
+                                             mct_real current, mct_real rate_change)
 {
     return current * motor->end_from_current + (voltage - motor->emf * rate) * motor->end_from_voltage -
            motor->emf * rate_change * motor->mean_from_voltage;
 }
 
 /* Force with the current eliminated (L = 0), for observers and estimates. */
-MCT_INLINE mct_real mct_motor_observed_force(const mct_motor *motor, uint32_t effects, mct_real u, mct_real rate)
+MCT_INLINE mct_real mct_motor_observed_force(const mct_motor *motor, uint32_t effects, mct_real u,
+                                             mct_real rate)
 {
     return (effects & MCT_MOTOR) ? motor->force_per_volt * u - motor->damping * rate : u;
 }
 
-/* Powers and energy of the motor, or of the plain force u, on a coordinate with this rate, at the current in `out`. */
-static inline void mct_motor_powers(const mct_motor *motor, uint32_t effects, mct_real u, mct_real rate, mct_evaluation *out)
+/*
+ * Powers and energy of the motor, or of the plain force u, on a coordinate with this rate, at the current in
+ * `out`.
+ */
+static inline void mct_motor_powers(const mct_motor *motor, uint32_t effects, mct_real u, mct_real rate,
+                                    mct_evaluation *out)
 {
     if (!(effects & MCT_MOTOR)) {
         out->power_input = u * rate;

@@ -9,11 +9,13 @@
 #error "mctau: the coordinates exceed the room of the least squares"
 #endif
 
-static bool is_finite(mct_real x) {
+static bool is_finite(mct_real x)
+{
     return x - x == MCT_R(0.0);
 }
 
-static mct_status check(const mct_gauss_system *self) {
+static mct_status check(const mct_gauss_system *self)
+{
     if (self->particle_count < 1 || self->coordinate_count < 1 || self->mass == NULL || self->place == NULL) {
         return MCT_ERROR_ARGUMENT;
     }
@@ -34,7 +36,8 @@ static mct_status check(const mct_gauss_system *self) {
  * alone or, for column = coordinate_count, the motion again.
  */
 static void place(const mct_gauss_system *self, mct_real time, const mct_real *q, const mct_real *v,
-                  int column, mct_hyperdual (*position)[3]) {
+                  int column, mct_hyperdual (*position)[3])
+{
     const mct_real one = MCT_R(1.0);
     const mct_real zero = MCT_R(0.0);
     const bool along_motion = column == self->coordinate_count;
@@ -49,7 +52,8 @@ static void place(const mct_gauss_system *self, mct_real time, const mct_real *q
 
 /** x' m y over all particles. Exactly the same for y' m x, so that M is symmetric to the bit. */
 static mct_real mass_product(const mct_gauss_system *self, const mct_real *x, int x_stride, const mct_real *y,
-                             int y_stride) {
+                             int y_stride)
+{
     mct_real sum = MCT_R(0.0);
     for (int row = 0; row < 3 * self->particle_count; row++) {
         sum += self->mass[row / 3] * (x[row * x_stride] * y[row * y_stride]);
@@ -58,7 +62,8 @@ static mct_real mass_product(const mct_gauss_system *self, const mct_real *x, in
 }
 
 mct_status mct_gauss_kinematics(const mct_gauss_system *self, mct_real time, const mct_real *q,
-                                const mct_real *v, mct_gauss_workspace *workspace, mct_gauss_motion *motion) {
+                                const mct_real *v, mct_gauss_workspace *workspace, mct_gauss_motion *motion)
+{
     const mct_status status = check(self);
     if (status != MCT_OK) {
         return status;
@@ -96,7 +101,8 @@ mct_status mct_gauss_kinematics(const mct_gauss_system *self, mct_real time, con
 }
 
 mct_status mct_gauss_dynamics(const mct_gauss_system *self, const mct_real *force, const mct_real *couple,
-                              mct_gauss_workspace *workspace, mct_gauss_motion *motion) {
+                              mct_gauss_workspace *workspace, mct_gauss_motion *motion)
+{
     const int rows = 3 * self->particle_count;
     const int columns = self->coordinate_count;
 

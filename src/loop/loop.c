@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring, mct_samples samples,
-                         mct_message *why)
+mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring,
+                         mct_samples samples, mct_message *why)
 {
     memset(loop, 0, sizeof *loop);
     loop->hal = hal;

@@ -5,7 +5,9 @@
 #include "mctau/compensated.h"
 
 #define TURN 6.283185307179586476925
-/* A whole turn as the nearest mct_real and the rest, so that taking one out is exact to twice the precision. */
+/*
+ * A whole turn as the nearest mct_real and the rest, so that taking one out is exact to twice the precision.
+ */
 static const mct_real turn = MCT_R(TURN);
 #if MCT_REAL_IS_FLOAT
 static const mct_real turn_rest = -1.7484555e-07F;
@@ -24,7 +26,9 @@ static bool is_sane(const mct_state *state)
     return sane;
 }
 
-/* Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone. */
+/*
+ * Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone.
+ */
 static void take_turns(mct_state *state, int i)
 {
     const mct_real x = state->x[i];
@@ -68,7 +72,8 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
     const bool bounded = (plant->effects & MCT_SATURATION) && (plant->effects & MCT_MOTOR);
     plant->substeps = scene->substeps;
     plant->bound = bounded ? (mct_real)scene->parameters[plant->system->supply_parameter] : MCT_REAL_MAX;
-    mct_state_set(plant->system, mct_state_count(plant->system, plant->effects), scene->initial, &plant->state);
+    mct_state_set(plant->system, mct_state_count(plant->system, plant->effects), scene->initial,
+                  &plant->state);
     return plant->system->prepare(scene, scene->dt / scene->substeps, &plant->constants, why);
 }
 

@@ -13,7 +13,8 @@ typedef struct {
 } reflection;
 
 /** Applies it to a vector whose entry i is y[i * stride]. */
-static void reflect(const reflection *self, mct_real *y, int stride) {
+static void reflect(const reflection *self, mct_real *y, int stride)
+{
     mct_real product = MCT_R(0.0);
     for (int i = self->first; i < self->rows; i++) {
         product += self->weight[i] * self->u[i * self->stride] * y[i * stride];
@@ -25,7 +26,8 @@ static void reflect(const reflection *self, mct_real *y, int stride) {
 }
 
 /** Sum of w x^2 over the rows from `first` to before `end` of a column. */
-static mct_real squared_length(const mct_real *x, int stride, const mct_real *weight, int first, int end) {
+static mct_real squared_length(const mct_real *x, int stride, const mct_real *weight, int first, int end)
+{
     mct_real sum = MCT_R(0.0);
     for (int i = first; i < end; i++) {
         sum += weight[i] * x[i * stride] * x[i * stride];
@@ -33,11 +35,13 @@ static mct_real squared_length(const mct_real *x, int stride, const mct_real *we
     return sum;
 }
 
-static bool is_finite(mct_real x) {
+static bool is_finite(mct_real x)
+{
     return x - x == MCT_R(0.0);
 }
 
-static mct_status check(int rows, int columns, const mct_real *weight) {
+static mct_status check(int rows, int columns, const mct_real *weight)
+{
     if (rows < 1 || columns < 1) {
         return MCT_ERROR_ARGUMENT;
     }
@@ -56,7 +60,8 @@ static mct_status check(int rows, int columns, const mct_real *weight) {
 }
 
 mct_status mct_least_squares(int rows, int columns, mct_real *design, const mct_real *weight,
-                             mct_real *observed, const mct_real *pull, mct_real *estimate) {
+                             mct_real *observed, const mct_real *pull, mct_real *estimate)
+{
     const mct_status status = check(rows, columns, weight);
     if (status != MCT_OK) {
         return status;

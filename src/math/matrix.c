@@ -4,7 +4,8 @@
 
 #define TAYLOR_DEGREE 15 /* with a norm of 1/2, the first term left out is 2^-15 / 16!, below 2^-59 */
 
-double mct_sqrt(double x) {
+double mct_sqrt(double x)
+{
     if (!(x > 0.0 && x <= DBL_MAX)) {
         const uint64_t quiet = UINT64_C(0x7ff8000000000000); /* 0/0 differs in sign between machines */
         double nan;
@@ -42,8 +43,8 @@ double mct_sqrt(double x) {
     return subnormal ? result * 0x1p-27 : result;
 }
 
-void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b,
-                         double *product) {
+void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b, double *product)
+{
     for (int i = 0; i < rows; i++) {
         for (int j = 0; j < columns; j++) {
             double sum = 0.0;
@@ -55,7 +56,8 @@ void mct_matrix_multiply(int rows, int inner, int columns, const double *a, cons
     }
 }
 
-void mct_matrix_transpose(int rows, int columns, const double *a, double *transposed) {
+void mct_matrix_transpose(int rows, int columns, const double *a, double *transposed)
+{
     for (int i = 0; i < rows; i++) {
         for (int j = 0; j < columns; j++) {
             transposed[j * rows + i] = a[i * columns + j];
@@ -63,11 +65,13 @@ void mct_matrix_transpose(int rows, int columns, const double *a, double *transp
     }
 }
 
-static mct_status check_dimension(int n) {
+static mct_status check_dimension(int n)
+{
     return n < 1 ? MCT_ERROR_ARGUMENT : n > MCT_MATRIX_MAX ? MCT_ERROR_BOUND : MCT_OK;
 }
 
-static void swap_rows(int columns, double *a, int i, int j) {
+static void swap_rows(int columns, double *a, int i, int j)
+{
     for (int k = 0; k < columns; k++) {
         const double kept = a[i * columns + k];
         a[i * columns + k] = a[j * columns + k];
@@ -76,13 +80,15 @@ static void swap_rows(int columns, double *a, int i, int j) {
 }
 
 /** row i <- row i - factor row j, from column `first` on */
-static void subtract_row(int columns, double *a, int i, double factor, int j, int first) {
+static void subtract_row(int columns, double *a, int i, double factor, int j, int first)
+{
     for (int k = first; k < columns; k++) {
         a[i * columns + k] -= factor * a[j * columns + k];
     }
 }
 
-mct_status mct_matrix_solve(int n, int columns, double *a, double *b) {
+mct_status mct_matrix_solve(int n, int columns, double *a, double *b)
+{
     const mct_status status = columns < 0 ? MCT_ERROR_ARGUMENT : check_dimension(n);
     if (status != MCT_OK) {
         return status;
@@ -141,7 +147,8 @@ mct_status mct_matrix_solve(int n, int columns, double *a, double *b) {
     return MCT_OK;
 }
 
-mct_status mct_matrix_inverse(int n, const double *a, double *inverse) {
+mct_status mct_matrix_inverse(int n, const double *a, double *inverse)
+{
     const mct_status status = check_dimension(n);
     if (status != MCT_OK) {
         return status;
@@ -155,7 +162,8 @@ mct_status mct_matrix_inverse(int n, const double *a, double *inverse) {
 }
 
 /** Largest sum of absolute values over a row; NaN or infinite when an entry is. */
-static double row_norm(int n, const double *a) {
+static double row_norm(int n, const double *a)
+{
     double norm = 0.0;
     for (int i = 0; i < n; i++) {
         double sum = 0.0;
@@ -173,7 +181,8 @@ static double row_norm(int n, const double *a) {
 }
 
 /** Column j of s + s^2/2! + s^3/3! + ..., s = a scale, by Horner: the small terms are added first. */
-static void taylor_column(int n, const double *a, double scale, int j, double *x) {
+static void taylor_column(int n, const double *a, double scale, int j, double *x)
+{
     double column[MCT_MATRIX_MAX];
     for (int i = 0; i < n; i++) {
         column[i] = scale * a[i * n + j] / TAYLOR_DEGREE;
@@ -190,7 +199,8 @@ static void taylor_column(int n, const double *a, double scale, int j, double *x
     }
 }
 
-mct_status mct_expm1(int n, const double *a, double *x) {
+mct_status mct_expm1(int n, const double *a, double *x)
+{
     const mct_status status = check_dimension(n);
     if (status != MCT_OK) {
         return status;

@@ -10,7 +10,8 @@
 /* The error after a doubling is of the order of the square of the change that it made. */
 #define SETTLED 0x1p-40
 
-static double largest(int count, const double *a) {
+static double largest(int count, const double *a)
+{
     double result = 0.0;
     for (int i = 0; i < count; i++) {
         const double size = mct_abs(a[i]);
@@ -23,7 +24,8 @@ static double largest(int count, const double *a) {
 }
 
 /** sum += (c + c') / 2: what is symmetric stays so, whatever rounding says. */
-static void add_symmetric(int n, const double *c, double *sum) {
+static void add_symmetric(int n, const double *c, double *sum)
+{
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             sum[i * n + j] += 0.5 * (c[i * n + j] + c[j * n + i]);
@@ -33,7 +35,8 @@ static void add_symmetric(int n, const double *c, double *sum) {
 
 /** K = (R + B'PB)^-1 B'PA */
 static mct_status gain(int n, int m, const double *A, const double *B, const double *R, const double *P,
-                       double *K) {
+                       double *K)
+{
     double Bt[M * N];
     double BtP[M * N];
     double weight[M * M];
@@ -48,7 +51,8 @@ static mct_status gain(int n, int m, const double *A, const double *B, const dou
 }
 
 /** G = B R^-1 B' */
-static mct_status reach(int n, int m, const double *B, const double *R, double *G) {
+static mct_status reach(int n, int m, const double *B, const double *R, double *G)
+{
     double factor[M * M];
     double solved[M * N];
     memcpy(factor, R, (size_t)(m * m) * sizeof *R);
@@ -64,7 +68,8 @@ static mct_status reach(int n, int m, const double *B, const double *R, double *
  * One doubling, with W = 1 + G H:  flow <- flow W^-1 flow,  G <- G + flow W^-1 G flow',
  * H <- H + flow' H W^-1 flow. `change` is the largest entry of what H gains.
  */
-static mct_status double_horizon(int n, double *flow, double *G, double *H, double *change) {
+static mct_status double_horizon(int n, double *flow, double *G, double *H, double *change)
+{
     double W[N * N];
     double solved[N * 2 * N]; /* W^-1 [flow G] */
     double transposed[N * N];
@@ -105,7 +110,8 @@ static mct_status double_horizon(int n, double *flow, double *G, double *H, doub
 }
 
 mct_status mct_discrete_riccati(int n, int m, const double *A, const double *B, const double *Q,
-                                const double *R, double *P, double *K) {
+                                const double *R, double *P, double *K)
+{
     if (n < 1 || m < 1) {
         return MCT_ERROR_ARGUMENT;
     }

@@ -28,7 +28,7 @@ typedef struct {
 const char *mct_number_read(mct_span text, mct_number *number);
 
 #define MCT_NUMBER_DIGITS 9
-#define MCT_NUMBER_TEXT 24 /* bytes that a written number needs at most, NUL included */
+#define MCT_NUMBER_TEXT   24 /* bytes that a written number needs at most, NUL included */
 
 /* Writes a number as C's "%.9g" does. */
 void mct_number_write(double value, char text[MCT_NUMBER_TEXT]);

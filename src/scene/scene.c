@@ -581,8 +581,8 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
 /* --- variation --- */
 
 /*
- * What is known exactly enough to be left alone: gravity, lengths, counts of teeth, the supply. Masses, inertias, the motor
- * and friction are not.
+ * What is known exactly enough to be left alone: gravity, lengths, counts of teeth, the supply. Masses,
+ * inertias, the motor and friction are not.
  */
 static bool is_certain(const mct_field *parameter)
 {

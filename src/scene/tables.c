@@ -7,19 +7,32 @@
 /* --- the fixed tables --- */
 
 #define PLACE(member) offsetof(mct_scene, member)
-#define REAL(name, unit, minimum, maximum, standard, member, doc)                                            \
-    {name, unit, doc, MCT_FIELD_REAL, minimum, maximum, standard, NULL, PLACE(member)}
-#define INTEGER(name, unit, minimum, maximum, standard, member, doc)                                         \
-    {name, unit, doc, MCT_FIELD_INTEGER, minimum, maximum, standard, NULL, PLACE(member)}
-#define BOOLEAN(name, standard, member, doc)                                                                 \
-    {name, "", doc, MCT_FIELD_BOOLEAN, 0, 1, standard, NULL, PLACE(member)}
-#define CHOICE(name, choices, standard, member, doc)                                                         \
-    {name, "", doc, MCT_FIELD_CHOICE, 0, 0, standard, choices, PLACE(member)}
-#define TEXT(name, member, doc) {name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member)}
-#define LIST(name, unit, minimum, maximum, member, doc)                                                      \
-    {name, unit, doc, MCT_FIELD_LIST, minimum, maximum, 0, NULL, PLACE(member)}
+#define REAL(name, unit, minimum, maximum, standard, member, doc)                        \
+    {                                                                                    \
+        name, unit, doc, MCT_FIELD_REAL, minimum, maximum, standard, NULL, PLACE(member) \
+    }
+#define INTEGER(name, unit, minimum, maximum, standard, member, doc)                        \
+    {                                                                                       \
+        name, unit, doc, MCT_FIELD_INTEGER, minimum, maximum, standard, NULL, PLACE(member) \
+    }
+#define BOOLEAN(name, standard, member, doc)                                  \
+    {                                                                         \
+        name, "", doc, MCT_FIELD_BOOLEAN, 0, 1, standard, NULL, PLACE(member) \
+    }
+#define CHOICE(name, choices, standard, member, doc)                            \
+    {                                                                           \
+        name, "", doc, MCT_FIELD_CHOICE, 0, 0, standard, choices, PLACE(member) \
+    }
+#define TEXT(name, member, doc)                                                \
+    {                                                                          \
+        name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member) \
+    }
+#define LIST(name, unit, minimum, maximum, member, doc)                           \
+    {                                                                             \
+        name, unit, doc, MCT_FIELD_LIST, minimum, maximum, 0, NULL, PLACE(member) \
+    }
 
-#define LONGEST 1e7       /* [s] */
+#define LONGEST       1e7 /* [s] */
 #define LARGEST_INPUT 1e9 /* [V], [N] or [N m] */
 
 static const char *const precisions[] = {"double", "float", NULL};
@@ -90,7 +103,10 @@ static const mct_field telemetry_fields[] = {
     TEXT("log", log, "path of an event log; empty: none"),
 };
 
-#define TABLE(name, fields, doc) {name, doc, (int)(sizeof fields / sizeof fields[0]), fields}
+#define TABLE(name, fields, doc)                                   \
+    {                                                              \
+        name, doc, (int)(sizeof fields / sizeof fields[0]), fields \
+    }
 
 const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT] = {
     TABLE("scene", scene_fields, "what is simulated, how, how long"),
@@ -108,7 +124,7 @@ enum { TABLE_SCENE, TABLE_SENSORS = 3 };
 
 /* Deviations that cost as much as the full input. */
 #define SMALLEST_WEIGHT 1e-6
-#define LARGEST_WEIGHT 1e6
+#define LARGEST_WEIGHT  1e6
 
 const char *mct_table_name(int table)
 {

@@ -16,9 +16,9 @@
 #include "text.h"
 
 enum {
-    MCT_TOML_ENTRIES = 128,     /* a scene has some 80 keys */
-    MCT_TOML_TABLES = 32,       /* and ten tables */
-    MCT_TOML_LENGTH = 1 << 20   /* bytes of a text */
+    MCT_TOML_ENTRIES = 128,   /* a scene has some 80 keys */
+    MCT_TOML_TABLES = 32,     /* and ten tables */
+    MCT_TOML_LENGTH = 1 << 20 /* bytes of a text */
 };
 
 typedef enum {
@@ -34,7 +34,7 @@ typedef struct {
     mct_span key;
     mct_span source; /* the value as written */
     mct_toml_kind kind;
-    bool is_bare; /* a text from outside of a file, without quotes: `source` as it stands */
+    bool is_bare;         /* a text from outside of a file, without quotes: `source` as it stands */
     int32_t line, column; /* of the key, from 1; columns count bytes */
     int32_t count;        /* numbers in a list */
     int64_t integer;      /* an integer; 0 or 1 of a boolean */

@@ -12,10 +12,12 @@
 #include "mctau/system.h"
 
 /* Time derivative of the state, or increments over one step, from the state x under input u. */
-typedef void (*mct_derivative)(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx);
+typedef void (*mct_derivative)(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                               mct_real *dx);
 
-MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, const void *constants, mct_step step,
-                            unsigned effects, int n, mct_state *state, mct_real input, int32_t steps)
+MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, const void *constants,
+                            mct_step step, unsigned effects, int n, mct_state *state, mct_real input,
+                            int32_t steps)
 {
     const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
     mct_real x[MCT_MAX_STATES];

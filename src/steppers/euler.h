@@ -1,6 +1,7 @@
 /*
- * Semi-implicit Euler: the velocity first, with damping and the motor's current taken implicitly, then the position with
- * the new velocity. `kick` is the system's piece: it writes the increments of velocity (and current) at the old position.
+ * Semi-implicit Euler: the velocity first, with damping and the motor's current taken implicitly, then the
+ * position with the new velocity. `kick` is the system's piece: it writes the increments of velocity (and
+ * current) at the old position.
  */
 #ifndef MCT_STEPPERS_EULER_H
 #define MCT_STEPPERS_EULER_H

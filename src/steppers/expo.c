@@ -7,10 +7,12 @@
 #define SIZE (MCT_MAX_STATES + 4)
 
 /*
- * e^(G) - 1 of the augmented generator of xdot = A x + B u + e (c0 + c1 s/h + c2 (s/h)^2): one column for the held input
- * and a chain of three for the powers of time, whose entries are h phi_1, h phi_2 and h phi_3 of A h applied to e.
+ * e^(G) - 1 of the augmented generator of xdot = A x + B u + e (c0 + c1 s/h + c2 (s/h)^2): one column for the
+ * held input and a chain of three for the powers of time, whose entries are h phi_1, h phi_2 and h phi_3 of A
+ * h applied to e.
  */
-static mct_status augmented_flow(int states, const double *A, const double *B, const double *e, double h, double *flow)
+static mct_status augmented_flow(int states, const double *A, const double *B, const double *e, double h,
+                                 double *flow)
 {
     const int size = states + 4;
     double generator[SIZE * SIZE];
@@ -27,8 +29,8 @@ static mct_status augmented_flow(int states, const double *A, const double *B, c
     return mct_expm1(size, generator, flow);
 }
 
-mct_status mct_expo_prepare(mct_expo *expo, int coordinates, int states, const double *A, const double *B, const double *e,
-                            double h)
+mct_status mct_expo_prepare(mct_expo *expo, int coordinates, int states, const double *A, const double *B,
+                            const double *e, double h)
 {
     static const double factorial[3] = {1, 1, 2}; /* integral of (s/h)^k is k! h phi_(k+1) */
     const int size = states + 4;

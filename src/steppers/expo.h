@@ -1,8 +1,10 @@
 /*
- * Exponential Nystroem method of order 4 (ERN4) for xdot = A x + B u + e g(x_0): the linear part, motor included, is flowed
- * exactly; the force g, one scalar, is sampled at the start, the middle and the end, and its parabola integrated exactly.
- * Hence no bound on h from the motor's L/R. Three sines a step. Constants store the flow minus 1, which keeps float exact.
- * Source: of the family in Hochbruck, Ostermann, "Exponential integrators", Acta Numerica 2010; order and error are measured in tests.
+ * Exponential Nystroem method of order 4 (ERN4) for xdot = A x + B u + e g(x_0): the linear part, motor
+ * included, is flowed exactly; the force g, one scalar, is sampled at the start, the middle and the end, and
+ * its parabola integrated exactly. Hence no bound on h from the motor's L/R. Three sines a step. Constants
+ * store the flow minus 1, which keeps float exact.
+ * Source: of the family in Hochbruck, Ostermann, "Exponential integrators", Acta Numerica 2010; order and
+ *   error are measured in tests.
  */
 #ifndef MCT_STEPPERS_EXPO_H
 #define MCT_STEPPERS_EXPO_H
@@ -13,8 +15,8 @@
 /* The nonlinear force at a coordinate. */
 typedef mct_real (*mct_expo_force)(const void *constants, mct_real position);
 
-MCT_INLINE void mct_expo_increments(mct_expo_force force, const void *constants, const mct_expo *expo, unsigned effects,
-                                    int n, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void mct_expo_increments(mct_expo_force force, const void *constants, const mct_expo *expo,
+                                    unsigned effects, int n, const mct_real *x, mct_real u, mct_real *dx)
 {
     const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
     const mct_real *rates = x + n;

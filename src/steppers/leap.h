@@ -1,8 +1,10 @@
 /*
- * Kahan's leapfrog: half a drift, a kick at the middle with forces bilinear in the old and the new velocity, half a drift.
+ * Kahan's leapfrog: half a drift, a kick at the middle with forces bilinear in the old and the new velocity,
+ * half a drift.
  *
- * Quadratic velocity terms C(q,v) v become C(q,v) v', damping D v becomes D (v + v')/2, and an inductive motor gives the
- * mean of its exact current. One sincos, one 2 x 2 solve; exactly symmetric in time without damping.
+ * Quadratic velocity terms C(q,v) v become C(q,v) v', damping D v becomes D (v + v')/2, and an inductive
+ * motor gives the mean of its exact current. One sincos, one 2 x 2 solve; exactly symmetric in time without
+ * damping.
  * Source: Kahan's unconventional scheme for quadratic fields, inside a Strang splitting. Order 2.
  */
 #ifndef MCT_STEPPERS_LEAP_H

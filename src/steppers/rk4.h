@@ -6,11 +6,12 @@
 
 #include "advance.h"
 
-MCT_INLINE void mct_rk4(mct_derivative derivative, const void *constants, mct_step step, unsigned effects, int n,
-                        const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void mct_rk4(mct_derivative derivative, const void *constants, mct_step step, unsigned effects,
+                        int n, const mct_real *x, mct_real u, mct_real *dx)
 {
     const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
-    mct_real k1[MCT_MAX_STATES], k2[MCT_MAX_STATES], k3[MCT_MAX_STATES], k4[MCT_MAX_STATES], stage[MCT_MAX_STATES];
+    mct_real k1[MCT_MAX_STATES], k2[MCT_MAX_STATES], k3[MCT_MAX_STATES], k4[MCT_MAX_STATES],
+        stage[MCT_MAX_STATES];
     derivative(constants, effects, x, u, k1);
     MCT_UNROLL
     for (int i = 0; i < states; i++) {

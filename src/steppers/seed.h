@@ -1,15 +1,15 @@
 /*
  * The source document's scheme, eqs. 22-23: v += h a, q += h v + h^2/2 a with the old v and a.
- * It is the Taylor method of order 1 with one free term more, and anti-damped: an oscillator of frequency w grows
- * as exp(w^2 h t / 4). Kept as the baseline.
+ * It is the Taylor method of order 1 with one free term more, and anti-damped: an oscillator of frequency w
+ * grows as exp(w^2 h t / 4). Kept as the baseline.
  */
 #ifndef MCT_STEPPERS_SEED_H
 #define MCT_STEPPERS_SEED_H
 
 #include "advance.h"
 
-MCT_INLINE void mct_seed(mct_derivative derivative, const void *constants, mct_step step, unsigned effects, int n,
-                         const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void mct_seed(mct_derivative derivative, const void *constants, mct_step step, unsigned effects,
+                         int n, const mct_real *x, mct_real u, mct_real *dx)
 {
     const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
     derivative(constants, effects, x, u, dx);

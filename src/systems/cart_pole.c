@@ -5,15 +5,16 @@
  *                   [ m1 + m2      m2 l cos th ]       [ -m2 l thd^2 sin th ]       [ f - k1 pd             ]
  *               M = [ m2 l cos th  m2 l^2      ]  Cv = [  0                 ] tau = [ m2 g l sin th - k2 thd]
  *               det M = m2 l^2 (m1 + m2 sin^2 th), never taken as a difference.
- *               With a motor f = force_per_ampere i (src/effects/motor.h) through a gear of ratio N and a pulley of
- *               radius rho: the motor turns N / rho times as fast as the cart moves.
+ *               With a motor f = force_per_ampere i (src/effects/motor.h) through a gear of ratio N and a
+ *               pulley of radius rho: the motor turns N / rho times as fast as the cart moves.
  * Source        section 2.4, eqs. 115-132.
  * Conventions   p to the right; th clockwise from the upward vertical, zero is the unstable equilibrium.
- * Differences   (125), (129), (132) have an entry -m2 l^2 that is not there; (126), (130) lack l; (131) has m for m2.
- *               Motor, dry friction and saturation are ours. k2 is a couple between pole and cart.
- * Constraint    cart: the track; pole: the rod, e = m2 xdd - (0, -m2 g, 0), which also transmits the couple k2.
- * Validity      rod and track rigid; any m1, m2, l > 0. A cart much lighter than the pole makes the motion stiff where
- *               the pole hangs or stands.
+ * Differences   (125), (129), (132) have an entry -m2 l^2 that is not there; (126), (130) lack l; (131) has m
+ *               for m2. Motor, dry friction and saturation are ours. k2 is a couple between pole and cart.
+ * Constraint    cart: the track; pole: the rod, e = m2 xdd - (0, -m2 g, 0), which also transmits the couple
+ *               k2.
+ * Validity      rod and track rigid; any m1, m2, l > 0. A cart much lighter than the pole makes the motion
+ *               stiff where the pole hangs or stands.
  */
 #include "mctau/cart_pole.h"
 
@@ -32,12 +33,27 @@
 typedef mct_cart_pole_constants constants_t;
 
 enum {
-    CART_MASS, POLE_MASS, POLE_LENGTH, CART_FRICTION, POLE_FRICTION, CART_COULOMB, POLE_COULOMB, GRAVITY,
-    TORQUE_CONSTANT, BACK_EMF_CONSTANT, RESISTANCE, INDUCTANCE, GEAR_RATIO, PULLEY_RADIUS, SUPPLY_VOLTAGE, PARAMETERS
+    CART_MASS,
+    POLE_MASS,
+    POLE_LENGTH,
+    CART_FRICTION,
+    POLE_FRICTION,
+    CART_COULOMB,
+    POLE_COULOMB,
+    GRAVITY,
+    TORQUE_CONSTANT,
+    BACK_EMF_CONSTANT,
+    RESISTANCE,
+    INDUCTANCE,
+    GEAR_RATIO,
+    PULLEY_RADIUS,
+    SUPPLY_VOLTAGE,
+    PARAMETERS
 };
 
 static const mct_field parameters[PARAMETERS] = {
-    [CART_MASS] = MCT_QUANTITY("cart_mass", "kg", 1e-6, 1e6, 0.758, "cart, with the motor's rotor as seen through the gear"),
+    [CART_MASS] = MCT_QUANTITY("cart_mass", "kg", 1e-6, 1e6, 0.758,
+                               "cart, with the motor's rotor as seen through the gear"),
     [POLE_MASS] = MCT_QUANTITY("pole_mass", "kg", 1e-6, 1e6, 0.175, "point mass at the end of the rod"),
     [POLE_LENGTH] = MCT_QUANTITY("pole_length", "m", 1e-4, 1e4, 0.434, "pivot to point mass"),
     [CART_FRICTION] = MCT_QUANTITY("cart_friction", "N s/m", 0, 1e6, 4.3, "viscous friction of the cart"),
@@ -46,11 +62,14 @@ static const mct_field parameters[PARAMETERS] = {
     [POLE_COULOMB] = MCT_QUANTITY("pole_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
     [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
     [TORQUE_CONSTANT] = MCT_QUANTITY("torque_constant", "N m/A", 0, 1e4, 0.00767, "motor torque per current"),
-    [BACK_EMF_CONSTANT] = MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.00767, "motor voltage per speed"),
+    [BACK_EMF_CONSTANT] =
+        MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.00767, "motor voltage per speed"),
     [RESISTANCE] = MCT_QUANTITY("resistance", "ohm", 0, 1e6, 2.6, "armature"),
-    [INDUCTANCE] = MCT_QUANTITY("inductance", "H", 0, 1e3, 0.00018, "armature; read by motor = \"inductive\""),
+    [INDUCTANCE] =
+        MCT_QUANTITY("inductance", "H", 0, 1e3, 0.00018, "armature; read by motor = \"inductive\""),
     [GEAR_RATIO] = MCT_QUANTITY("gear_ratio", "", 1e-3, 1e4, 3.71, "motor turns per pulley turn"),
-    [PULLEY_RADIUS] = MCT_QUANTITY("pulley_radius", "m", 1e-5, 1e3, 0.00635, "pulley or pinion that drives the cart"),
+    [PULLEY_RADIUS] =
+        MCT_QUANTITY("pulley_radius", "m", 1e-5, 1e3, 0.00635, "pulley or pinion that drives the cart"),
     [SUPPLY_VOLTAGE] = MCT_QUANTITY("supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
 };
 
@@ -100,7 +119,8 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
                           p[BACK_EMF_CONSTANT], p[RESISTANCE], p[INDUCTANCE], h);
     k->cart_damping = k->cart_viscous + ((effects & MCT_MOTOR_QUASI_STATIC) ? k->motor.damping : 0);
     if (status == MCT_ERROR_RANGE) {
-        mct_message_add(why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
+        mct_message_add(
+            why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
     }
     return status;
 }
@@ -119,7 +139,8 @@ MCT_INLINE void solve(const constants_t *k, mct_real s, mct_real c, mct_real f1,
     a[1] = inverse * (k->mass_per_inertia * f2 - c_over_l * f1);
 }
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
 {
     const constants_t *k = constants;
     const mct_real pd = x[2];
@@ -147,11 +168,12 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
 }
 
 /*
- * Velocity increments of an impulse over the step, with the matrix M + extra, where extra = [e11 e12; 0 e22] holds what is
- * taken implicitly. The determinant is that of M plus what extra adds, so that a light cart does not lose it.
+ * Velocity increments of an impulse over the step, with the matrix M + extra, where extra = [e11 e12; 0 e22]
+ * holds what is taken implicitly. The determinant is that of M plus what extra adds, so that a light cart
+ * does not lose it.
  */
-MCT_INLINE void impulse(const constants_t *k, mct_real s, mct_real c, mct_real e11, mct_real e12, mct_real e22,
-                        mct_real p1, mct_real p2, mct_real *dv)
+MCT_INLINE void impulse(const constants_t *k, mct_real s, mct_real c, mct_real e11, mct_real e12,
+                        mct_real e22, mct_real p1, mct_real p2, mct_real *dv)
 {
     const mct_real m12 = k->moment * c;
     const mct_real a11 = k->total_mass + e11;
@@ -165,7 +187,8 @@ MCT_INLINE void impulse(const constants_t *k, mct_real s, mct_real c, mct_real e
 }
 
 /* Kick of `euler`: damping and current implicit, h known to the constants. */
-MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                              mct_real *dx)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
@@ -197,7 +220,8 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
 }
 
 /* Kick of `leap`: bilinear in old and new velocity, damping at their mean, current averaged exactly. */
-MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                               mct_real *dx)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
@@ -240,7 +264,8 @@ static mct_symmetric2 inverse_mass(const constants_t *k, mct_real s, mct_real c)
 }
 
 /* Dry friction at the middle of the step. */
-static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                            mct_real *dx)
 {
     (void)effects;
     (void)u;
@@ -250,7 +275,8 @@ static inline void friction(const void *constants, unsigned effects, const mct_r
     mct_friction_correct(inverse_mass(k, s, c), k->coulomb, k->step.h, x + 2, dx);
 }
 
-static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_evaluation *out)
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
 {
     const constants_t *k = constants;
     const mct_real pd = x[2];
@@ -293,7 +319,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->constraint_force[1][0] = k->pole_mass * pole_acceleration[0];
     out->constraint_force[1][1] = k->pole_mass * (pole_acceleration[1] + k->gravity);
 
-    out->kinetic_energy = MCT_R(0.5) * (k->total_mass * pd * pd + k->inertia * thd * thd) + k->moment * c * pd * thd;
+    out->kinetic_energy =
+        MCT_R(0.5) * (k->total_mass * pd * pd + k->inertia * thd * thd) + k->moment * c * pd * thd;
     out->potential_energy = k->weight_moment * c;
     out->power_viscous = cart_viscous * pd + pole_viscous * thd;
     out->power_coulomb = dry[0] * pd + dry[1] * thd;
@@ -311,7 +338,8 @@ static void accelerate(const void *constants, uint32_t effects, const mct_real *
           k->weight_moment * s - k->pole_viscous * thd, a);
 }
 
-static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3])
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
 {
     (void)time;
     const constants_t *k = constants;
@@ -334,19 +362,19 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
     const double back_emf = motor ? volts_to_force * ratio * p[BACK_EMF_CONSTANT] : 0;
     const double cart_damping = (viscous ? p[CART_FRICTION] : 0) + back_emf;
     const double pole_damping = viscous ? p[POLE_FRICTION] : 0;
-    const double stiffness =
-        (scene->effects & MCT_GRAVITY) ? p[POLE_MASS] * p[GRAVITY] * p[POLE_LENGTH] : 0;
+    const double stiffness = (scene->effects & MCT_GRAVITY) ? p[POLE_MASS] * p[GRAVITY] * p[POLE_LENGTH] : 0;
     /* M^-1 upright: [1, -1/l; -1/l, (m1 + m2)/(m2 l^2)] / m1. */
     const double w11 = 1 / p[CART_MASS];
     const double w12 = -w11 / p[POLE_LENGTH];
-    const double w22 =
-        w11 * (p[CART_MASS] + p[POLE_MASS]) / (p[POLE_MASS] * p[POLE_LENGTH] * p[POLE_LENGTH]);
+    const double w22 = w11 * (p[CART_MASS] + p[POLE_MASS]) / (p[POLE_MASS] * p[POLE_LENGTH] * p[POLE_LENGTH]);
     *model = (mct_linear_model){
         .states = 4,
+        /* clang-format off */
         .A = {0, 0, 1, 0,
               0, 0, 0, 1,
               0, w12 * stiffness, -w11 * cart_damping, -w12 * pole_damping,
               0, w22 * stiffness, -w12 * cart_damping, -w22 * pole_damping},
+        /* clang-format on */
         .B = {0, 0, w11 * volts_to_force, w12 * volts_to_force},
     };
 }

@@ -4,15 +4,19 @@
  * Equation      M a = tau (C = 0),  q = (th1, th2):
  *                   [ J + I_w  I_w ]         [ mgl sin th1 - nu1 th1d ]       J   = m_w l^2 + I_a
  *               M = [ I_w      I_w ]   tau = [ torque - nu2 th2d      ]       mgl = (S_a + m_w l) g
- *               hence J th1dd = tau1 - tau2,  I_w (th1dd + th2dd) = tau2.  torque = k_T i (src/effects/motor.h).
+ *               hence J th1dd = tau1 - tau2,  I_w (th1dd + th2dd) = tau2.  torque = k_T i
+ *               (src/effects/motor.h).
  * Source        section 2.5, eqs. 133-173.
- * Conventions   th1 clockwise from the upward vertical, zero is the unstable equilibrium; th2 is relative to the arm, as a
- *               motor's encoder sees it, so motor torque and nu2 enter row 2 only. S_a, I_a: sums of m l and m l^2 of the arm.
- * Differences   I_w is a parameter: the source's wheel is a hoop, I_w = m_w r^2 (140). The sign of (147) is wrong in the
- *               source, but a balanced wheel has C = 0. (168) lacks an entry. Inductance, dry friction, saturation: ours.
- * Constraint    The arm stands for two particles at +-a with its S_a and I_a, the wheel for two opposite ones on its hoop;
- *               e = m xdd - m (0, -g, 0) also transmits the couples (motor, friction).
- * Validity      arm and wheel rigid, the wheel balanced; J, I_w > 0. M is constant: its condition is about 190 by default.
+ * Conventions   th1 clockwise from the upward vertical, zero is the unstable equilibrium; th2 is relative to
+ *               the arm, as a motor's encoder sees it, so motor torque and nu2 enter row 2 only. S_a, I_a:
+ *               sums of m l and m l^2 of the arm.
+ * Differences   I_w is a parameter: the source's wheel is a hoop, I_w = m_w r^2 (140). The sign of (147) is
+ *               wrong in the source, but a balanced wheel has C = 0. (168) lacks an entry. Inductance, dry
+ *               friction, saturation: ours.
+ * Constraint    The arm stands for two particles at +-a with its S_a and I_a, the wheel for two opposite ones
+ *               on its hoop; e = m xdd - m (0, -g, 0) also transmits the couples (motor, friction).
+ * Validity      arm and wheel rigid, the wheel balanced; J, I_w > 0. M is constant: its condition is about
+ * 190 by default.
  */
 #include "mctau/reaction_wheel.h"
 
@@ -32,23 +36,41 @@
 typedef mct_reaction_wheel_constants constants_t;
 
 enum {
-    WHEEL_MASS, WHEEL_INERTIA, ARM_LENGTH, ARM_INERTIA, ARM_MOMENT, GRAVITY, ARM_FRICTION, WHEEL_FRICTION, ARM_COULOMB,
-    WHEEL_COULOMB, TORQUE_CONSTANT, BACK_EMF_CONSTANT, RESISTANCE, INDUCTANCE, SUPPLY_VOLTAGE, PARAMETERS
+    WHEEL_MASS,
+    WHEEL_INERTIA,
+    ARM_LENGTH,
+    ARM_INERTIA,
+    ARM_MOMENT,
+    GRAVITY,
+    ARM_FRICTION,
+    WHEEL_FRICTION,
+    ARM_COULOMB,
+    WHEEL_COULOMB,
+    TORQUE_CONSTANT,
+    BACK_EMF_CONSTANT,
+    RESISTANCE,
+    INDUCTANCE,
+    SUPPLY_VOLTAGE,
+    PARAMETERS
 };
 
 static const mct_field parameters[PARAMETERS] = {
-    [WHEEL_MASS] = MCT_QUANTITY("wheel_mass", "kg", 1e-6, 1e6, 0.0850, "wheel, with the part of the motor that sits at its axle"),
+    [WHEEL_MASS] = MCT_QUANTITY("wheel_mass", "kg", 1e-6, 1e6, 0.0850,
+                                "wheel, with the part of the motor that sits at its axle"),
     [WHEEL_INERTIA] = MCT_QUANTITY("wheel_inertia", "kg m^2", 1e-12, 1e6, 2.495e-5, "wheel about its axle"),
     [ARM_LENGTH] = MCT_QUANTITY("arm_length", "m", 1e-4, 1e4, 0.1270, "pivot to the wheel's axle"),
-    [ARM_INERTIA] = MCT_QUANTITY("arm_inertia", "kg m^2", 0, 1e6, 3.201e-3, "sum of m l^2 of the arm about the pivot"),
+    [ARM_INERTIA] =
+        MCT_QUANTITY("arm_inertia", "kg m^2", 0, 1e6, 3.201e-3, "sum of m l^2 of the arm about the pivot"),
     [ARM_MOMENT] = MCT_QUANTITY("arm_moment", "kg m", -1e6, 1e6, 0.025384, "sum of m l of the arm"),
     [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
     [ARM_FRICTION] = MCT_QUANTITY("arm_friction", "N m s", 0, 1e6, 2e-4, "viscous friction of the pivot"),
-    [WHEEL_FRICTION] = MCT_QUANTITY("wheel_friction", "N m s", 0, 1e6, 3e-6, "viscous friction of the wheel's axle"),
+    [WHEEL_FRICTION] =
+        MCT_QUANTITY("wheel_friction", "N m s", 0, 1e6, 3e-6, "viscous friction of the wheel's axle"),
     [ARM_COULOMB] = MCT_QUANTITY("arm_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
     [WHEEL_COULOMB] = MCT_QUANTITY("wheel_coulomb", "N m", 0, 1e6, 0, "dry friction of the wheel's axle"),
     [TORQUE_CONSTANT] = MCT_QUANTITY("torque_constant", "N m/A", 0, 1e4, 0.0274, "motor torque per current"),
-    [BACK_EMF_CONSTANT] = MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.0274, "motor voltage per speed"),
+    [BACK_EMF_CONSTANT] =
+        MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.0274, "motor voltage per speed"),
     [RESISTANCE] = MCT_QUANTITY("resistance", "ohm", 0, 1e6, 12.1, "armature"),
     [INDUCTANCE] = MCT_QUANTITY("inductance", "H", 0, 1e3, 0.006, "armature; read by motor = \"inductive\""),
     [SUPPLY_VOLTAGE] = MCT_QUANTITY("supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
@@ -65,15 +87,20 @@ static const mct_coordinate coordinates[2] = {
      .rate = MCT_QUANTITY("wheel_rate", "rad/s", -1e6, 1e6, 0, ""),
      .is_angle = true,
      .is_cyclic = true,
-     .encoder = MCT_QUANTITY("wheel_counts_per_turn", "1/turn", 4, 1e9, 4096, "encoder of the wheel, on the arm"),
+     .encoder =
+         MCT_QUANTITY("wheel_counts_per_turn", "1/turn", 4, 1e9, 4096, "encoder of the wheel, on the arm"),
      .position_weight = 300,
      .rate_weight = 300},
 };
 
-static const mct_field torque_field = MCT_QUANTITY("torque", "N m", -1e9, 1e9, 0, "on the wheel, its reaction on the arm");
+static const mct_field torque_field =
+    MCT_QUANTITY("torque", "N m", -1e9, 1e9, 0, "on the wheel, its reaction on the arm");
 static const char *const particle_names[] = {"arm_outer", "arm_inner", "wheel_1", "wheel_2"};
 
-/* Adds the entries (e11, e22) to M and inverts it: J + e11 and I_w + e22 never meet in a difference that cancels. */
+/*
+ * Adds the entries (e11, e22) to M and inverts it: J + e11 and I_w + e22 never meet in a difference that
+ * cancels.
+ */
 static mct_symmetric2 inverse_of(double J, double I_w, double e11, double e22)
 {
     const double m11 = J + I_w + e11;
@@ -93,7 +120,8 @@ static int linear_part(const mct_scene *scene, uint32_t effects, double *A, doub
     const bool viscous = effects & MCT_VISCOUS;
     const double conductance = (effects & MCT_MOTOR_QUASI_STATIC) ? 1 / p[RESISTANCE] : 0;
     const double nu1 = viscous ? p[ARM_FRICTION] : 0;
-    const double nu2 = (viscous ? p[WHEEL_FRICTION] : 0) + p[TORQUE_CONSTANT] * p[BACK_EMF_CONSTANT] * conductance;
+    const double nu2 =
+        (viscous ? p[WHEEL_FRICTION] : 0) + p[TORQUE_CONSTANT] * p[BACK_EMF_CONSTANT] * conductance;
     const double torque_per_input = (effects & MCT_MOTOR) ? p[TORQUE_CONSTANT] * conductance : 1;
     for (int i = 0; i < states * states; i++) {
         A[i] = 0;
@@ -153,10 +181,11 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->inverse_arm = (mct_real)(1 / J);
     k->inverse_wheel = (mct_real)(1 / I_w);
 
-    mct_status status = mct_motor_prepare(&k->motor, effects, 1, p[TORQUE_CONSTANT], p[BACK_EMF_CONSTANT], p[RESISTANCE],
-                                          p[INDUCTANCE], h);
+    mct_status status = mct_motor_prepare(&k->motor, effects, 1, p[TORQUE_CONSTANT], p[BACK_EMF_CONSTANT],
+                                          p[RESISTANCE], p[INDUCTANCE], h);
     if (status == MCT_ERROR_RANGE) {
-        mct_message_add(why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
+        mct_message_add(
+            why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
     }
     if (status != MCT_OK) {
         return status;
@@ -190,14 +219,15 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     const int states = linear_part(scene, effects, A, B, e);
     status = mct_expo_prepare(&k->expo, 2, states, A, B, e, h);
     if (status != MCT_OK) {
-        mct_message_add(why, "scene.dt: the linear part of this scene is too fast for the exact flow over one step");
+        mct_message_add(
+            why, "scene.dt: the linear part of this scene is too fast for the exact flow over one step");
     }
     return status;
 }
 
 /* tau at arm angle and rates. */
-MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real angle, const mct_real *v, mct_real drive,
-                        mct_real *tau)
+MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real angle, const mct_real *v,
+                        mct_real drive, mct_real *tau)
 {
     tau[0] = 0;
     tau[1] = drive;
@@ -214,7 +244,8 @@ MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real angle, 
     }
 }
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
 {
     const constants_t *k = constants;
     const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
@@ -236,7 +267,8 @@ MCT_INLINE void impulse(mct_symmetric2 inverse, mct_real h, const mct_real *tau,
 }
 
 /* Kick of `euler`: damping and current implicit. */
-MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                              mct_real *dx)
 {
     const constants_t *k = constants;
     mct_real current = 0;
@@ -250,7 +282,8 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
 }
 
 /* Kick of `leap`: damping at the mean of old and new velocity, current averaged exactly. */
-MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                               mct_real *dx)
 {
     const constants_t *k = constants;
     mct_real current = 0;
@@ -274,7 +307,8 @@ MCT_INLINE mct_real weight(const void *constants, mct_real angle)
     return k->weight_moment * s;
 }
 
-static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                            mct_real *dx)
 {
     (void)effects;
     (void)u;
@@ -282,7 +316,8 @@ static inline void friction(const void *constants, unsigned effects, const mct_r
     mct_friction_correct(k->inverse_mass, k->coulomb, k->step.h, x + 2, dx);
 }
 
-static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_evaluation *out)
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
 {
     const constants_t *k = constants;
     const mct_real arm_rate = x[2];
@@ -301,7 +336,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
             (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : mct_motor_quasi_static_current(&k->motor, u, wheel_rate);
         drive = k->motor.force_per_ampere * out->current;
     }
-    const mct_real smooth[2] = {k->weight_moment * s - k->arm_viscous * arm_rate, drive - k->wheel_viscous * wheel_rate};
+    const mct_real smooth[2] = {k->weight_moment * s - k->arm_viscous * arm_rate,
+                                drive - k->wheel_viscous * wheel_rate};
     mct_real dry[2];
     mct_friction_force(k->inverse_mass, k->coulomb, x + 2, smooth, dry);
     out->tau[0] = smooth[0] + dry[0];
@@ -314,8 +350,10 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real a = out->acceleration[0];
     const mct_real rim_a = a + out->acceleration[1];
     const mct_real along[2] = {c * a - s * arm_rate * arm_rate, -s * a - c * arm_rate * arm_rate};
-    const mct_real rim[2] = {rim_c * rim_a - rim_s * rim_rate * rim_rate, -rim_s * rim_a - rim_c * rim_rate * rim_rate};
-    const mct_real masses[4] = {k->outer_arm_mass, k->inner_arm_mass, k->wheel_particle_mass, k->wheel_particle_mass};
+    const mct_real rim[2] = {rim_c * rim_a - rim_s * rim_rate * rim_rate,
+                             -rim_s * rim_a - rim_c * rim_rate * rim_rate};
+    const mct_real masses[4] = {k->outer_arm_mass, k->inner_arm_mass, k->wheel_particle_mass,
+                                k->wheel_particle_mass};
     const mct_real on_arm[4] = {k->arm_radius, -k->arm_radius, k->arm_length, k->arm_length};
     const mct_real on_rim[4] = {0, 0, k->wheel_radius, -k->wheel_radius};
     for (int i = 0; i < 4; i++) {
@@ -345,7 +383,8 @@ static void accelerate(const void *constants, uint32_t effects, const mct_real *
     a[1] = tau2 * k->inverse_wheel - a[0];
 }
 
-static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3])
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
 {
     (void)time;
     const constants_t *k = constants;
@@ -387,8 +426,9 @@ MCT_STEPPER_KERNELS(expo, mct_expo_increments(weight, k, &k->expo, effects, 2, x
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
     static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels, [MCT_STEPPER_LEAP] = leap_kernels,
-        [MCT_STEPPER_RK4] = rk4_kernels,   [MCT_STEPPER_EXPO] = expo_kernels,
+        [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_EXPO] = expo_kernels,
     };
     return mct_kernel_of(kernels, stepper, effects);
 }

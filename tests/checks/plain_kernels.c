@@ -1,6 +1,7 @@
 /*
- * Kernels as one would write them for a mechanism that has no effects at all: no gravity, no friction, no motor. Written
- * from the equations, with no mask anywhere. test_kernels.py holds the library's kernels of mask 0 against them.
+ * Kernels as one would write them for a mechanism that has no effects at all: no gravity, no friction, no
+ * motor. Written from the equations, with no mask anywhere. test_kernels.py holds the library's kernels of
+ * mask 0 against them.
  * Only what every kernel has is shared: constants, sine and cosine, compensated sums.
  */
 #include "mctau/cart_pole.h"

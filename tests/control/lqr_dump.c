@@ -1,4 +1,5 @@
-/* Prints, for scenes given as lines "system key=value ...", the linear model, the weights and the gains, as JSON. */
+/* Prints, for scenes given as lines "system key=value ...", the linear model, the weights and the gains, as
+ * JSON. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +7,8 @@
 #include "mctau/controller.h"
 #include "mctau/scene.h"
 
-static void print_numbers(const char *name, const double *numbers, int count) {
+static void print_numbers(const char *name, const double *numbers, int count)
+{
     printf("\"%s\": [", name);
     for (int i = 0; i < count; i++) {
         printf("%s%.17g", i > 0 ? ", " : "", numbers[i]);
@@ -14,14 +16,16 @@ static void print_numbers(const char *name, const double *numbers, int count) {
     printf("], ");
 }
 
-int main(void) {
+int main(void)
+{
     char line[4096];
     while (fgets(line, sizeof line, stdin) != NULL) {
         mct_override overrides[32];
         int count = 0;
         char text[256];
         const char *const system_name = strtok(line, " \n");
-        snprintf(text, sizeof text, "[scene]\nsystem = \"%s\"\n[controller]\nkind = \"swing_up_balance\"\n", system_name);
+        snprintf(text, sizeof text, "[scene]\nsystem = \"%s\"\n[controller]\nkind = \"swing_up_balance\"\n",
+                 system_name);
         for (char *word = strtok(NULL, " \n"); word != NULL && count < 32; word = strtok(NULL, " \n")) {
             overrides[count++] = (mct_override){word, "test"};
         }
@@ -46,7 +50,8 @@ int main(void) {
         print_numbers("B", model.B, model.states);
         print_numbers("weights", scene.weights, model.states);
         print_numbers("K", gains, model.states);
-        printf("\"dt\": %.17g, \"input_weight\": %.17g, \"limit\": %.17g}\n", scene.dt, scene.input_weight, limit);
+        printf("\"dt\": %.17g, \"input_weight\": %.17g, \"limit\": %.17g}\n", scene.dt, scene.input_weight,
+               limit);
     }
     return 0;
 }

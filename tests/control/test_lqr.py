@@ -15,10 +15,11 @@ import scipy.linalg
 SEED = 20240301
 CHANGED = {
     "cart_pole": ["cart_mass", "pole_mass", "pole_length", "cart_friction", "torque_constant", "resistance"],
-    "reaction_wheel": ["wheel_mass", "wheel_inertia", "arm_inertia", "arm_moment", "torque_constant", "resistance"],
+    "reaction_wheel": ["wheel_mass", "wheel_inertia", "arm_inertia", "arm_moment", "torque_constant",
+                       "resistance"],
 }
-DEFAULTS = {"cart_mass": 0.758, "pole_mass": 0.175, "pole_length": 0.434, "cart_friction": 4.3, "wheel_mass": 0.085,
-            "wheel_inertia": 2.495e-5, "arm_inertia": 3.201e-3, "arm_moment": 0.025384}
+DEFAULTS = {"cart_mass": 0.758, "pole_mass": 0.175, "pole_length": 0.434, "cart_friction": 4.3,
+            "wheel_mass": 0.085, "wheel_inertia": 2.495e-5, "arm_inertia": 3.201e-3, "arm_moment": 0.025384}
 MOTOR = {"cart_pole": {"torque_constant": 0.00767, "resistance": 2.6},
          "reaction_wheel": {"torque_constant": 0.0274, "resistance": 12.1}}
 
@@ -39,7 +40,8 @@ def dump(source, build, tmp_path_factory):
     subprocess.run([*compiler, *flags, *includes, file, library, "-o", program], check=True)
 
     def run(lines):
-        result = subprocess.run([program], input="\n".join(lines) + "\n", capture_output=True, text=True, check=True)
+        feed = "\n".join(lines) + "\n"
+        result = subprocess.run([program], input=feed, capture_output=True, text=True, check=True)
         return [json.loads(line) for line in result.stdout.splitlines()]
 
     return run
@@ -67,8 +69,9 @@ def scenes():
     numbers = random.Random(SEED)
     for trial in range(100):
         system = ("cart_pole", "reaction_wheel")[trial % 2]
-        words = [system, f"scene.dt={numbers.choice([0.0005, 0.001, 0.002, 0.004])}",
-                 f"controller.input_weight={numbers.uniform(0.2, 5):.6g}", "effects.motor=quasi_static"]
+        words = [system, "effects.motor=quasi_static",
+                 f"scene.dt={numbers.choice([0.0005, 0.001, 0.002, 0.004])}",
+                 f"controller.input_weight={numbers.uniform(0.2, 5):.6g}"]
         for name in CHANGED[system]:
             value = MOTOR[system].get(name, DEFAULTS.get(name))
             words.append(f"parameters.{name}={value * numbers.uniform(0.6, 1.6):.9g}")

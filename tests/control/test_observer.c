@@ -1,10 +1,10 @@
 /*
- * Rates from counts. The encoder of a wheel without forces, 4096 counts a turn, follows a prescribed motion; the observer's
- * model knows nothing of it, unless the test says so.
+ * Rates from counts. The encoder of a wheel without forces, 4096 counts a turn, follows a prescribed motion;
+ * the observer's model knows nothing of it, unless the test says so.
  *
- * Bounds: with p = exp(-bandwidth h), one count moves the rate by (1 - p)^2 unit / h, and rounding of the position by half a
- * count either way at most by four times that while it settles; an acceleration that the model does not know makes the rate
- * lag by h (1 + p) / (1 - p) times the acceleration.
+ * Bounds: with p = exp(-bandwidth h), one count moves the rate by (1 - p)^2 unit / h, and rounding of the
+ * position by half a count either way at most by four times that while it settles; an acceleration that the
+ * model does not know makes the rate lag by h (1 + p) / (1 - p) times the acceleration.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,18 +15,21 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-#define TURN 6.283185307179586
-#define UNIT (TURN / 4096)
-#define H 1e-3
+#define TURN      6.283185307179586
+#define UNIT      (TURN / 4096)
+#define H         1e-3
 #define BANDWIDTH 150.0
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static mct_scene forceless(double start, int bits) {
+static mct_scene forceless(double start, int bits)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, 0);
     scene.initial[0] = start;
     scene.initial[1] = start;
@@ -43,16 +46,19 @@ typedef struct {
     uint32_t first; /* what the counters showed at the start */
 } bench;
 
-static void start(bench *self, const mct_scene *scene, uint32_t first) {
+static void start(bench *self, const mct_scene *scene, uint32_t first)
+{
     self->scene = *scene;
     self->first = first;
     self->mask = scene->counter_bits == 32 ? UINT32_MAX : (UINT32_C(1) << scene->counter_bits) - 1;
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_systems[scene->system]->prepare(scene, scene->dt, &self->constants, NULL));
+    TEST_ASSERT_EQUAL_INT(MCT_OK,
+                          mct_systems[scene->system]->prepare(scene, scene->dt, &self->constants, NULL));
     mct_observer_init(&self->observer, scene, &self->constants);
 }
 
 /* Hands over what encoders show that have moved by a way [rad] since the start. */
-static void feed(bench *self, double way, uint32_t flags) {
+static void feed(bench *self, double way, uint32_t flags)
+{
     mct_reading reading;
     memset(&reading, 0, sizeof reading);
     const int64_t counts = llround(way / UNIT);
@@ -63,24 +69,29 @@ static void feed(bench *self, double way, uint32_t flags) {
     mct_observer_update(&self->observer, &reading, 0);
 }
 
-static double pole(void) {
+static double pole(void)
+{
     return exp(-BANDWIDTH * H);
 }
 
-static double count_error(void) {
+static double count_error(void)
+{
     return 4 * (1 - pole()) * (1 - pole()) * UNIT / H;
 }
 
-static double lag(double acceleration) {
+static double lag(double acceleration)
+{
     return H * (1 + pole()) / (1 - pole()) * acceleration;
 }
 
 /* Rounding of the observer's own arithmetic at this rate. */
-static double rounding(double rate) {
+static double rounding(double rate)
+{
     return 100 * (double)MCT_REAL_EPSILON * rate;
 }
 
-static void test_a_ramp_has_no_lag_at_any_rate(void) {
+static void test_a_ramp_has_no_lag_at_any_rate(void)
+{
     static const double rates[] = {0.2, 1, 7, 33, -150, 400};
     for (size_t n = 0; n < sizeof rates / sizeof rates[0]; n++) {
         static bench self;
@@ -102,7 +113,8 @@ static void test_a_ramp_has_no_lag_at_any_rate(void) {
     }
 }
 
-static void test_a_sine_is_followed_within_the_lag_of_its_acceleration(void) {
+static void test_a_sine_is_followed_within_the_lag_of_its_acceleration(void)
+{
     static const double frequencies[] = {2, 9, 30};
     for (int n = 0; n < 3; n++) {
         static bench self;
@@ -115,14 +127,17 @@ static void test_a_sine_is_followed_within_the_lag_of_its_acceleration(void) {
             const double error = (double)self.observer.x[2] - 0.5 * w * cos(w * k * H);
             worst = k >= 1000 ? fmax(worst, fabs(error)) : worst;
         }
-        printf("sine of %g rad/s, 0.5 rad: off by %.4f rad/s at most, bound %.4f\n", w, worst, lag(0.5 * w * w) + count_error());
+        printf("sine of %g rad/s, 0.5 rad: off by %.4f rad/s at most, bound %.4f\n", w, worst,
+               lag(0.5 * w * w) + count_error());
         TEST_ASSERT_TRUE(worst < lag(0.5 * w * w) + count_error());
     }
 }
 
 /* A driven pendulum whose model is right: what is left is the counts', no lag. */
-static void test_a_right_model_leaves_no_lag(void) {
-    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC);
+static void test_a_right_model_leaves_no_lag(void)
+{
+    mct_scene scene =
+        scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC);
     scene.initial[0] = 2;
     scene.observer_bandwidth = BANDWIDTH;
     static bench self;
@@ -139,7 +154,9 @@ static void test_a_right_model_leaves_no_lag(void) {
         }
         mct_observer_update(&self.observer, &reading, applied);
         for (int i = 0; i < 2; i++) {
-            worst[i] = k < 1000 ? 0 : fmax(worst[i], fabs((double)self.observer.x[2 + i] - mct_plant_value(&plant, 2 + i)));
+            worst[i] = k < 1000 ? 0
+                                : fmax(worst[i],
+                                       fabs((double)self.observer.x[2 + i] - mct_plant_value(&plant, 2 + i)));
         }
         applied = (mct_real)(10 * sin(5 * k * H));
         mct_plant_step(&plant, applied);
@@ -149,11 +166,13 @@ static void test_a_right_model_leaves_no_lag(void) {
 }
 
 /* Estimates do not know how wide a counter is, nor where it stood: the same bits. */
-static void test_a_counters_width_and_its_wrap_change_no_bit_of_an_estimate(void) {
+static void test_a_counters_width_and_its_wrap_change_no_bit_of_an_estimate(void)
+{
     static const struct {
         int bits;
         uint32_t first;
-    } counters[] = {{32, 0}, {32, 0x7fffffc0}, {32, 0xffffffe0}, {16, 0}, {16, 0xfff0}, {16, 0x7ff0}, {8, 0}, {8, 0xf8}, {8, 0x7c}, {12, 0}};
+    } counters[] = {{32, 0},      {32, 0x7fffffc0}, {32, 0xffffffe0}, {16, 0},   {16, 0xfff0},
+                    {16, 0x7ff0}, {8, 0},           {8, 0xf8},        {8, 0x7c}, {12, 0}};
     enum { COUNTERS = sizeof counters / sizeof counters[0] };
     static bench benches[COUNTERS];
     for (int n = 0; n < COUNTERS; n++) {
@@ -171,7 +190,8 @@ static void test_a_counters_width_and_its_wrap_change_no_bit_of_an_estimate(void
     }
 }
 
-static void test_positions_start_where_the_scene_says_and_angles_stay_within_half_a_turn(void) {
+static void test_positions_start_where_the_scene_says_and_angles_stay_within_half_a_turn(void)
+{
     static const double starts[] = {0, 3.141592653589793, -3.141592653589793, 6.2, -6.2, 100, -1000.5};
     for (size_t n = 0; n < sizeof starts / sizeof starts[0]; n++) {
         static bench self;
@@ -189,7 +209,8 @@ static void test_positions_start_where_the_scene_says_and_angles_stay_within_hal
     }
 }
 
-static void test_the_very_first_estimate_of_an_angle_is_within_half_a_turn(void) {
+static void test_the_very_first_estimate_of_an_angle_is_within_half_a_turn(void)
+{
     static bench self;
     const mct_scene scene = forceless(6.2, 32);
     start(&self, &scene, 0);
@@ -198,7 +219,8 @@ static void test_the_very_first_estimate_of_an_angle_is_within_half_a_turn(void)
 }
 
 /* Ten ticks in each hundred are missing, their counts stand still: nothing is lost, the rate goes on. */
-static void test_missing_readings_lose_no_count_and_keep_the_rate(void) {
+static void test_missing_readings_lose_no_count_and_keep_the_rate(void)
+{
     static bench self;
     const mct_scene scene = forceless(0, 16);
     start(&self, &scene, 0);
@@ -217,7 +239,8 @@ static void test_missing_readings_lose_no_count_and_keep_the_rate(void) {
     TEST_ASSERT_TRUE(worst < count_error() + rounding(33));
 }
 
-static void test_nothing_is_estimated_before_the_first_valid_reading(void) {
+static void test_nothing_is_estimated_before_the_first_valid_reading(void)
+{
     static bench self;
     const mct_scene scene = forceless(2, 32);
     start(&self, &scene, 0);
@@ -232,7 +255,8 @@ static void test_nothing_is_estimated_before_the_first_valid_reading(void) {
 }
 
 /* 2.8 hours: 35 000 turns of the wheel. The position is the counter's, so nothing adds up. */
-static void test_a_position_does_not_drift_in_1e7_ticks(void) {
+static void test_a_position_does_not_drift_in_1e7_ticks(void)
+{
     static bench self;
     const mct_scene scene = forceless(0.5, 32);
     start(&self, &scene, 0);
@@ -248,7 +272,8 @@ static void test_a_position_does_not_drift_in_1e7_ticks(void) {
     TEST_ASSERT_DOUBLE_WITHIN(count_error(), 22.2, (double)self.observer.x[3]);
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_a_ramp_has_no_lag_at_any_rate);
     RUN_TEST(test_a_sine_is_followed_within_the_lag_of_its_acceleration);

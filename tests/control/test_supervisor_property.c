@@ -13,28 +13,33 @@ static mct_supervisor gate;
 static mct_reading reading;
 static mct_real estimate[2 * MCT_MAX_COORDINATES];
 
-static void start(int system) {
+static void start(int system)
+{
     const mct_scene scene = swing_up_scene(system);
     mct_supervisor_init(&gate, &scene);
     memset(&reading, 0, sizeof reading);
     memset(estimate, 0, sizeof estimate);
 }
 
-void setUp(void) {
+void setUp(void)
+{
     start(REACTION_WHEEL);
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static mct_real pass(double wanted) {
+static mct_real pass(double wanted)
+{
     reading.counts[0]++; /* alive */
     reading.counts[1]++;
     return mct_supervisor_pass(&gate, &reading, estimate, (mct_real)wanted);
 }
 
 /* The fault is latched, and stays; cleared, the motor runs again from the next valid reading on. */
-static void check_latched(mct_fault fault, const char *name) {
+static void check_latched(mct_fault fault, const char *name)
+{
     TEST_ASSERT_EQUAL_STRING(name, mct_fault_name(fault));
     TEST_ASSERT_TRUE(strlen(mct_fault_text(fault)) > 10);
     TEST_ASSERT_EQUAL_UINT32(1u << fault, gate.latched);
@@ -55,7 +60,8 @@ static void check_latched(mct_fault fault, const char *name) {
     TEST_ASSERT_TRUE(gate.armed);
 }
 
-static void test_a_healthy_gate_lets_through_what_is_wanted_up_to_the_supply(void) {
+static void test_a_healthy_gate_lets_through_what_is_wanted_up_to_the_supply(void)
+{
     TEST_ASSERT_TRUE(pass(3) == 3);
     TEST_ASSERT_TRUE(pass(-10) == -10);
     TEST_ASSERT_EQUAL_UINT64(0, gate.limited_ticks);
@@ -64,7 +70,8 @@ static void test_a_healthy_gate_lets_through_what_is_wanted_up_to_the_supply(voi
     TEST_ASSERT_EQUAL_UINT32(0, gate.latched);
 }
 
-static void test_the_motor_is_not_driven_before_the_first_valid_reading(void) {
+static void test_the_motor_is_not_driven_before_the_first_valid_reading(void)
+{
     reading.flags = MCT_READING_MISSING;
     for (int k = 0; k < 5; k++) {
         TEST_ASSERT_TRUE(pass(5) == 0 && !gate.armed);
@@ -73,14 +80,16 @@ static void test_the_motor_is_not_driven_before_the_first_valid_reading(void) {
     TEST_ASSERT_TRUE(pass(5) == 5 && gate.armed);
 }
 
-static void test_a_sensor_value_that_is_not_finite_latches_sensor_invalid(void) {
+static void test_a_sensor_value_that_is_not_finite_latches_sensor_invalid(void)
+{
     pass(5);
     reading.flags = MCT_READING_INVALID;
     TEST_ASSERT_TRUE(pass(5) == 0);
     check_latched(MCT_FAULT_SENSOR_INVALID, "sensor_invalid");
 }
 
-static void test_feedback_is_derated_from_3_ms_and_zero_and_latched_from_5_ms(void) {
+static void test_feedback_is_derated_from_3_ms_and_zero_and_latched_from_5_ms(void)
+{
     pass(8);
     static const struct {
         uint32_t age;
@@ -99,7 +108,8 @@ static void test_feedback_is_derated_from_3_ms_and_zero_and_latched_from_5_ms(vo
     check_latched(MCT_FAULT_SENSOR_STALE, "sensor_stale");
 }
 
-static void test_a_driven_encoder_that_stands_still_latches_sensor_frozen(void) {
+static void test_a_driven_encoder_that_stands_still_latches_sensor_frozen(void)
+{
     int ticks = 0;
     for (; gate.latched == 0 && ticks < 1000; ticks++) {
         mct_supervisor_pass(&gate, &reading, estimate, 6);
@@ -108,14 +118,16 @@ static void test_a_driven_encoder_that_stands_still_latches_sensor_frozen(void) 
     check_latched(MCT_FAULT_SENSOR_FROZEN, "sensor_frozen");
 }
 
-static void test_an_encoder_may_stand_still_under_little_voltage(void) {
+static void test_an_encoder_may_stand_still_under_little_voltage(void)
+{
     for (int k = 0; k < 5000; k++) {
         mct_supervisor_pass(&gate, &reading, estimate, 4);
     }
     TEST_ASSERT_EQUAL_UINT32(0, gate.latched);
 }
 
-static void test_an_estimate_that_is_not_finite_latches_its_fault(void) {
+static void test_an_estimate_that_is_not_finite_latches_its_fault(void)
+{
     for (int i = 0; i < 4; i++) {
         start(REACTION_WHEEL);
         pass(5);
@@ -125,7 +137,8 @@ static void test_an_estimate_that_is_not_finite_latches_its_fault(void) {
     }
 }
 
-static void test_a_wanted_voltage_that_is_not_finite_latches_its_fault(void) {
+static void test_a_wanted_voltage_that_is_not_finite_latches_its_fault(void)
+{
     static const double wanted[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 3; k++) {
         start(REACTION_WHEEL);
@@ -135,7 +148,8 @@ static void test_a_wanted_voltage_that_is_not_finite_latches_its_fault(void) {
     }
 }
 
-static void test_a_cart_that_leaves_its_track_latches_track_end(void) {
+static void test_a_cart_that_leaves_its_track_latches_track_end(void)
+{
     start(CART_POLE);
     estimate[0] = MCT_R(0.399);
     TEST_ASSERT_TRUE(pass(5) == 5);
@@ -144,7 +158,8 @@ static void test_a_cart_that_leaves_its_track_latches_track_end(void) {
     check_latched(MCT_FAULT_TRACK_END, "track_end");
 }
 
-static void test_a_wheel_beyond_its_speed_latches_overspeed(void) {
+static void test_a_wheel_beyond_its_speed_latches_overspeed(void)
+{
     estimate[3] = 1999;
     TEST_ASSERT_TRUE(pass(5) == 5);
     estimate[3] = -2001;
@@ -152,7 +167,8 @@ static void test_a_wheel_beyond_its_speed_latches_overspeed(void) {
     check_latched(MCT_FAULT_OVERSPEED, "overspeed");
 }
 
-static void test_faults_from_outside_are_latched_under_their_names(void) {
+static void test_faults_from_outside_are_latched_under_their_names(void)
+{
     pass(5);
     mct_supervisor_fault(&gate, MCT_FAULT_HAL);
     TEST_ASSERT_TRUE(pass(5) == 0);
@@ -162,7 +178,8 @@ static void test_faults_from_outside_are_latched_under_their_names(void) {
     check_latched(MCT_FAULT_STOPPED, "stopped");
 }
 
-static void test_a_cause_that_persists_latches_again(void) {
+static void test_a_cause_that_persists_latches_again(void)
+{
     reading.flags = MCT_READING_INVALID;
     pass(5);
     mct_supervisor_rearm(&gate);
@@ -171,7 +188,8 @@ static void test_a_cause_that_persists_latches_again(void) {
     TEST_ASSERT_EQUAL_UINT64(2, gate.counts[MCT_FAULT_SENSOR_INVALID]);
 }
 
-static double anything(test_random *random) {
+static double anything(test_random *random)
+{
     switch (random_bits(random) % 12) {
     case 0:
         return NAN;
@@ -188,7 +206,8 @@ static double anything(test_random *random) {
     }
 }
 
-static void test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_zero_in_doubt(void) {
+static void test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_zero_in_doubt(void)
+{
     test_random random = {3};
     long driven = 0;
     for (int k = 0; k < 1000000; k++) {
@@ -221,15 +240,18 @@ static void test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_
 static mct_loop loop;
 static mct_sim sim;
 
-static void start_loop(const mct_scene *scene) {
+static void start_loop(const mct_scene *scene)
+{
     mct_message why = {""};
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_sim_init(&sim, scene, &why), why.text);
     const mct_hal hal = mct_sim_hal(&sim);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context));
 }
 
-static void test_silent_sensors_end_at_zero_volts_within_6_ticks_and_it_stays_so(void) {
+static void test_silent_sensors_end_at_zero_volts_within_6_ticks_and_it_stays_so(void)
+{
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         for (int latency = 0; latency < 3; latency++) {
             mct_scene scene = swing_up_scene(system);
@@ -251,7 +273,8 @@ static void test_silent_sensors_end_at_zero_volts_within_6_ticks_and_it_stays_so
     }
 }
 
-static void test_a_nan_from_a_sensor_is_zero_volts_in_the_same_tick(void) {
+static void test_a_nan_from_a_sensor_is_zero_volts_in_the_same_tick(void)
+{
     mct_scene scene = swing_up_scene(CART_POLE);
     scene.sensor_fault = MCT_SENSOR_FAULT_NAN;
     scene.sensor_fault_time = 0.6;
@@ -266,7 +289,8 @@ static void test_a_nan_from_a_sensor_is_zero_volts_in_the_same_tick(void) {
 }
 
 /* A short silence is ridden out: derated at most, and the pendulum stays up. */
-static void test_a_silence_of_three_ticks_is_ridden_out(void) {
+static void test_a_silence_of_three_ticks_is_ridden_out(void)
+{
     mct_scene scene = swing_up_scene(REACTION_WHEEL);
     scene.initial[0] = 0.05;
     scene.sensor_fault = MCT_SENSOR_FAULT_SILENT;
@@ -287,21 +311,25 @@ static struct {
     mct_real last;
 } broken;
 
-static mct_status broken_read(void *context, mct_reading *out) {
+static mct_status broken_read(void *context, mct_reading *out)
+{
     return broken.read != MCT_OK ? broken.read : mct_sim_hal(context).ops->read(context, out);
 }
 
-static mct_status broken_write(void *context, mct_real input) {
+static mct_status broken_write(void *context, mct_real input)
+{
     broken.last = input;
     return broken.write != MCT_OK ? broken.write : mct_sim_hal(context).ops->write(context, input);
 }
 
-static void broken_stop(void *context) {
+static void broken_stop(void *context)
+{
     broken.stops++;
     mct_sim_hal(context).ops->stop(context);
 }
 
-static void test_a_hal_that_cannot_read_or_write_is_latched_and_ends_at_zero_volts(void) {
+static void test_a_hal_that_cannot_read_or_write_is_latched_and_ends_at_zero_volts(void)
+{
     for (int which = 0; which < 2; which++) {
         const mct_scene scene = swing_up_scene(CART_POLE);
         start_loop(&scene);
@@ -323,7 +351,8 @@ static void test_a_hal_that_cannot_read_or_write_is_latched_and_ends_at_zero_vol
     }
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_a_healthy_gate_lets_through_what_is_wanted_up_to_the_supply);
     RUN_TEST(test_the_motor_is_not_driven_before_the_first_valid_reading);

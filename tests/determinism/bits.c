@@ -1,10 +1,11 @@
 /*
- * Prints one 64-bit hash per case over all the bits that the case computes, so that builds can be compared line by line.
- * usage: bits SCENE...
+ * Prints one 64-bit hash per case over all the bits that the case computes, so that builds can be compared
+ * line by line. usage: bits SCENE...
  *
- * Cases: sine and cosine; every stepper x system x motor (all eight sets of gravity, viscous and coulomb in one hash), the
- * state of every tick under an input that jumps; M, C, tau and all that follows from them; the closed loop of each
- * scene given, as it is and with noise, latency and a plant that differs, all that a tick records.
+ * Cases: sine and cosine; every stepper x system x motor (all eight sets of gravity, viscous and coulomb in
+ * one hash), the state of every tick under an input that jumps; M, C, tau and all that follows from them; the
+ * closed loop of each scene given, as it is and with noise, latency and a plant that differs, all that a tick
+ * records.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,14 +5,17 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 /* The arm, 45 degrees off upright, its weight of 0.25 N m held by a friction of 0.3 N m. */
-static mct_scene held_arm(int stepper, double friction) {
+static mct_scene held_arm(int stepper, double friction)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, stepper, MCT_GRAVITY | MCT_COULOMB);
     scene.initial[0] = 0.785;
     *parameter_of(&scene, "arm_coulomb") = friction;
@@ -20,7 +23,8 @@ static mct_scene held_arm(int stepper, double friction) {
     return scene;
 }
 
-static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void) {
+static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void)
+{
     for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
         const mct_scene scene = held_arm(stepper, 0.3);
         mct_plant plant;
@@ -33,7 +37,8 @@ static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void) {
     }
 }
 
-static void test_an_arm_that_friction_cannot_hold_starts_to_move(void) {
+static void test_an_arm_that_friction_cannot_hold_starts_to_move(void)
+{
     for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
         const mct_scene scene = held_arm(stepper, 0.24);
         mct_plant plant;
@@ -44,7 +49,8 @@ static void test_an_arm_that_friction_cannot_hold_starts_to_move(void) {
 }
 
 /* A cart alone: v^2 / (2 a), a = F / m. The tick in which it stops is off by at most h^2 a / 8. */
-static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_rests(void) {
+static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_rests(void)
+{
     for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
         if (mct_systems[CART_POLE]->kernel(stepper, MCT_COULOMB) == NULL) {
             continue;
@@ -64,7 +70,8 @@ static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_res
         printf("%-5s stops %.1e m off\n", mct_steppers[stepper].name, error);
         /* seed's free term is half a step of acceleration more; float: 500 roundings of a way of 0.25 m */
         const double way = 1e-6 * a / 8 + 100 * (double)MCT_REAL_EPSILON * 0.25;
-        TEST_ASSERT_TRUE(error < (stepper == MCT_STEPPER_EULER || stepper == MCT_STEPPER_SEED ? 1e-3 : 2 * way));
+        TEST_ASSERT_TRUE(error <
+                         (stepper == MCT_STEPPER_EULER || stepper == MCT_STEPPER_SEED ? 1e-3 : 2 * way));
         TEST_ASSERT_TRUE(plant.state.x[2] == 0 && plant.state.x[3] == 0);
         const mct_state rest = plant.state;
         step_plant(&plant, MCT_R(1.99), 10000); /* less than the friction */
@@ -75,10 +82,12 @@ static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_res
 }
 
 /*
- * A hanging pendulum with dry friction alone loses tau (|th_n| + |th_n+1|) between two turning points, where it may rest for
- * a tick. Tolerance: a turning point is found to a tick, where the energy is off by the square of a tick's rate.
+ * A hanging pendulum with dry friction alone loses tau (|th_n| + |th_n+1|) between two turning points, where
+ * it may rest for a tick. Tolerance: a turning point is found to a tick, where the energy is off by the
+ * square of a tick's rate.
  */
-static void test_each_half_swing_loses_the_friction_times_its_way(void) {
+static void test_each_half_swing_loses_the_friction_times_its_way(void)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB);
     const double friction = 0.005;
     *parameter_of(&scene, "arm_coulomb") = friction;
@@ -111,7 +120,8 @@ static void test_each_half_swing_loses_the_friction_times_its_way(void) {
     TEST_ASSERT_TRUE(plant.state.x[3] == 0); /* the lock held */
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks);
     RUN_TEST(test_an_arm_that_friction_cannot_hold_starts_to_move);

@@ -8,10 +8,12 @@
 
 enum { CASES = 100000 };
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 typedef struct {
@@ -22,11 +24,13 @@ typedef struct {
     double after[2];
 } impulse_case;
 
-static impulse_case draw(test_random *random) {
+static impulse_case draw(test_random *random)
+{
     impulse_case self;
     const double a = random_scale(random, 1e-2, 1e2);
     const double b = random_scale(random, 1e-2, 1e2);
-    const double coupling = random_in(random, -0.99, 0.99); /* condition up to some 200, as a reaction wheel's */
+    const double coupling =
+        random_in(random, -0.99, 0.99); /* condition up to some 200, as a reaction wheel's */
     self.W = (mct_symmetric2){(mct_real)a, (mct_real)(coupling * sqrt(a * b)), (mct_real)b};
     for (int i = 0; i < 2; i++) {
         self.v[i] = (mct_real)random_in(random, -1, 1);
@@ -40,16 +44,18 @@ static impulse_case draw(test_random *random) {
 }
 
 /* v'M v / 2, M = W^-1. */
-static double energy(const mct_symmetric2 *W, double v1, double v2) {
+static double energy(const mct_symmetric2 *W, double v1, double v2)
+{
     const double det = (double)W->a11 * (double)W->a22 - (double)W->a12 * (double)W->a12;
     return 0.5 * ((double)W->a22 * v1 * v1 - 2 * (double)W->a12 * v1 * v2 + (double)W->a11 * v2 * v2) / det;
 }
 
 /*
- * Either a coordinate rests, or it slides and the full bound acts against it. A velocity counts as zero below some
- * roundings of the terms that it is the sum of, times the condition of W.
+ * Either a coordinate rests, or it slides and the full bound acts against it. A velocity counts as zero below
+ * some roundings of the terms that it is the sum of, times the condition of W.
  */
-static void test_a_coordinate_rests_or_slides_against_the_full_bound(void) {
+static void test_a_coordinate_rests_or_slides_against_the_full_bound(void)
+{
     test_random random = {7};
     int resting[3] = {0, 0, 0};
     for (int k = 0; k < CASES; k++) {
@@ -59,7 +65,8 @@ static void test_a_coordinate_rests_or_slides_against_the_full_bound(void) {
         for (int i = 0; i < 2; i++) {
             const double p = (double)now.p[i];
             const double bound = (double)now.bound[i];
-            const double terms = fabs((double)now.v[i]) + W[i] * fabs(p) + fabs((double)now.W.a12 * (double)now.p[1 - i]);
+            const double terms =
+                fabs((double)now.v[i]) + W[i] * fabs(p) + fabs((double)now.W.a12 * (double)now.p[1 - i]);
             const double zero = 1000 * (double)MCT_REAL_EPSILON * terms;
             TEST_ASSERT_TRUE(fabs(p) <= bound);
             if (now.after[i] > zero) {
@@ -76,7 +83,8 @@ static void test_a_coordinate_rests_or_slides_against_the_full_bound(void) {
     TEST_ASSERT_TRUE(resting[0] > CASES / 20 && resting[1] > CASES / 20 && resting[2] > CASES / 20);
 }
 
-static void test_friction_never_adds_energy(void) {
+static void test_friction_never_adds_energy(void)
+{
     test_random random = {8};
     for (int k = 0; k < CASES; k++) {
         const impulse_case now = draw(&random);
@@ -86,7 +94,8 @@ static void test_friction_never_adds_energy(void) {
     }
 }
 
-static void test_without_bounds_there_is_no_impulse_and_with_large_ones_all_comes_to_rest(void) {
+static void test_without_bounds_there_is_no_impulse_and_with_large_ones_all_comes_to_rest(void)
+{
     test_random random = {9};
     for (int k = 0; k < 1000; k++) {
         impulse_case now = draw(&random);
@@ -102,7 +111,8 @@ static void test_without_bounds_there_is_no_impulse_and_with_large_ones_all_come
     }
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_a_coordinate_rests_or_slides_against_the_full_bound);
     RUN_TEST(test_friction_never_adds_energy);

@@ -5,13 +5,16 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static mct_scene scene_with_motor(int system, int stepper, double resistance, double inductance) {
+static mct_scene scene_with_motor(int system, int stepper, double resistance, double inductance)
+{
     mct_scene scene = scene_of(system, stepper, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE);
     *parameter_of(&scene, "resistance") = resistance;
     *parameter_of(&scene, "inductance") = inductance;
@@ -20,7 +23,8 @@ static mct_scene scene_with_motor(int system, int stepper, double resistance, do
 }
 
 /* State after half a second under a square wave, 50 Hz. */
-static void run_wave(const mct_scene *scene, double *end) {
+static void run_wave(const mct_scene *scene, double *end)
+{
     mct_plant plant;
     start_plant(&plant, scene);
     for (int k = 0; k < 500; k++) {
@@ -32,12 +36,16 @@ static void run_wave(const mct_scene *scene, double *end) {
     TEST_ASSERT_EQUAL_UINT64(0, plant.diverged_ticks);
 }
 
-/* The gap to L = 0 shrinks with L down to rounding and has no jump: leap averages the current exactly, expo flows it. */
-static void test_the_motion_is_continuous_in_the_inductance_down_to_zero(void) {
+/* The gap to L = 0 shrinks with L down to rounding and has no jump: leap averages the current exactly, expo
+ * flows it. */
+static void test_the_motion_is_continuous_in_the_inductance_down_to_zero(void)
+{
     static const double inductances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
     static const struct {
         int system, stepper;
-    } pairs[] = {{CART_POLE, MCT_STEPPER_LEAP}, {REACTION_WHEEL, MCT_STEPPER_LEAP}, {REACTION_WHEEL, MCT_STEPPER_EXPO}};
+    } pairs[] = {{CART_POLE, MCT_STEPPER_LEAP},
+                 {REACTION_WHEEL, MCT_STEPPER_LEAP},
+                 {REACTION_WHEEL, MCT_STEPPER_EXPO}};
     for (size_t n = 0; n < sizeof pairs / sizeof pairs[0]; n++) {
         const double resistance = pairs[n].system == CART_POLE ? 2.6 : 12.1;
         double limit[4];
@@ -45,9 +53,11 @@ static void test_the_motion_is_continuous_in_the_inductance_down_to_zero(void) {
         TEST_ASSERT_EQUAL_UINT32(MCT_MOTOR_QUASI_STATIC, mct_scene_effects(&without) & MCT_MOTOR);
         run_wave(&without, limit);
         double before = INFINITY;
-        printf("%s, %s: gap to L = 0:", mct_systems[pairs[n].system]->name, mct_steppers[pairs[n].stepper].name);
+        printf("%s, %s: gap to L = 0:", mct_systems[pairs[n].system]->name,
+               mct_steppers[pairs[n].stepper].name);
         for (int k = 0; k < 7; k++) {
-            const mct_scene scene = scene_with_motor(pairs[n].system, pairs[n].stepper, resistance, inductances[k]);
+            const mct_scene scene =
+                scene_with_motor(pairs[n].system, pairs[n].stepper, resistance, inductances[k]);
             double end[4];
             run_wave(&scene, end);
             double gap = 0;
@@ -55,7 +65,8 @@ static void test_the_motion_is_continuous_in_the_inductance_down_to_zero(void) {
                 gap = fmax(gap, fabs(end[i] - limit[i]) / fmax(1, fabs(limit[i])));
             }
             printf(" %.1e", gap);
-            /* ten times less inductance, ten times less gap, until roundings of 500 steps are all that is left */
+            /* ten times less inductance, ten times less gap, until roundings of 500 steps are all that is
+             * left */
             TEST_ASSERT_TRUE(gap < fmax(before / 5, 500 * (double)MCT_REAL_EPSILON));
             before = gap;
         }
@@ -64,7 +75,8 @@ static void test_the_motion_is_continuous_in_the_inductance_down_to_zero(void) {
 }
 
 /* 10 V on a hanging wheel: at L/R = 0.5 ms the quasi-static arm is off by 0.16 mrad after 2 s (ERRATA). */
-static void test_the_gap_to_the_quasi_static_motor_is_linear_in_its_time_constant(void) {
+static void test_the_gap_to_the_quasi_static_motor_is_linear_in_its_time_constant(void)
+{
     double gap[4];
     double end = 0;
     for (int k = 0; k < 4; k++) {
@@ -86,8 +98,8 @@ static void test_the_gap_to_the_quasi_static_motor_is_linear_in_its_time_constan
             end = k == 0 ? now : end;
         }
     }
-    printf("arm's gap at L/R = 0.5 ms: %.3f mrad after 2 s, at most %.3f; halved: %.3f, %.3f, %.3f\n", end * 1e3,
-           gap[0] * 1e3, gap[1] * 1e3, gap[2] * 1e3, gap[3] * 1e3);
+    printf("arm's gap at L/R = 0.5 ms: %.3f mrad after 2 s, at most %.3f; halved: %.3f, %.3f, %.3f\n",
+           end * 1e3, gap[0] * 1e3, gap[1] * 1e3, gap[2] * 1e3, gap[3] * 1e3);
     TEST_ASSERT_DOUBLE_WITHIN(0.02e-3, 0.16e-3, end);
     for (int k = 1; k < 4; k++) {
         TEST_ASSERT_DOUBLE_WITHIN(MCT_REAL_IS_FLOAT ? 0.1 : 0.02, 2, gap[k - 1] / gap[k]);
@@ -95,7 +107,8 @@ static void test_the_gap_to_the_quasi_static_motor_is_linear_in_its_time_constan
 }
 
 /* Without resistance the current of a shorted motor is -(k / L) times the way of the wheel. */
-static void test_a_motor_without_resistance_is_finite_and_its_current_follows_the_way(void) {
+static void test_a_motor_without_resistance_is_finite_and_its_current_follows_the_way(void)
+{
     static const int steppers[] = {MCT_STEPPER_EULER, MCT_STEPPER_LEAP, MCT_STEPPER_RK4, MCT_STEPPER_EXPO};
     for (size_t n = 0; n < sizeof steppers / sizeof steppers[0]; n++) {
         for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
@@ -114,16 +127,19 @@ static void test_a_motor_without_resistance_is_finite_and_its_current_follows_th
             TEST_ASSERT_TRUE(fabs(way) > 1e-3);
             /* leap and euler see another way within a step: h/2 times the rate */
             const double rate = fabs(mct_plant_value(&plant, 2 + driven));
-            const double tolerance = emf / 0.5 * (fabs(way) * (MCT_REAL_IS_FLOAT ? 1e-4 : 1e-6) + 1e-3 * (rate + 5));
+            const double tolerance =
+                emf / 0.5 * (fabs(way) * (MCT_REAL_IS_FLOAT ? 1e-4 : 1e-6) + 1e-3 * (rate + 5));
             TEST_ASSERT_DOUBLE_WITHIN(tolerance, -emf / 0.5 * way, current);
             if (steppers[n] == MCT_STEPPER_EXPO || steppers[n] == MCT_STEPPER_RK4) {
-                TEST_ASSERT_DOUBLE_WITHIN(fabs(current) * (MCT_REAL_IS_FLOAT ? 1e-4 : 1e-7), -emf / 0.5 * way, current);
+                TEST_ASSERT_DOUBLE_WITHIN(fabs(current) * (MCT_REAL_IS_FLOAT ? 1e-4 : 1e-7), -emf / 0.5 * way,
+                                          current);
             }
         }
     }
 }
 
-static void test_a_motor_with_neither_resistance_nor_inductance_is_refused(void) {
+static void test_a_motor_with_neither_resistance_nor_inductance_is_refused(void)
+{
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         const mct_scene scene = scene_with_motor(system, MCT_STEPPER_LEAP, 0, 0);
         mct_plant plant;
@@ -133,8 +149,10 @@ static void test_a_motor_with_neither_resistance_nor_inductance_is_refused(void)
     }
 }
 
-/* A wheel at 1e4 rad/s under 10 V brakes to V / k, 365 rad/s, without a swing about it, at any L/R and at long ticks. */
-static void test_a_wheel_at_1e4_rad_per_s_slows_monotonically_to_the_voltage_over_k(void) {
+/* A wheel at 1e4 rad/s under 10 V brakes to V / k, 365 rad/s, without a swing about it, at any L/R and at
+ * long ticks. */
+static void test_a_wheel_at_1e4_rad_per_s_slows_monotonically_to_the_voltage_over_k(void)
+{
     static const int steppers[] = {MCT_STEPPER_LEAP, MCT_STEPPER_EXPO};
     static const double inductances[] = {0, 12.1 * 1e-6, 12.1 * 1e-4};
     for (int n = 0; n < 2; n++) {
@@ -151,7 +169,8 @@ static void test_a_wheel_at_1e4_rad_per_s_slows_monotonically_to_the_voltage_ove
             for (int k = 0; k < 2000; k++) {
                 mct_plant_step(&plant, 10);
                 const double rate = mct_plant_value(&plant, 3);
-                TEST_ASSERT_TRUE(rate <= before * (1 + (double)MCT_REAL_EPSILON) && rate > last * (1 - 100 * (double)MCT_REAL_EPSILON));
+                TEST_ASSERT_TRUE(rate <= before * (1 + (double)MCT_REAL_EPSILON) &&
+                                 rate > last * (1 - 100 * (double)MCT_REAL_EPSILON));
                 before = rate;
             }
             TEST_ASSERT_DOUBLE_WITHIN(1e-3 * last, last, before);
@@ -159,7 +178,8 @@ static void test_a_wheel_at_1e4_rad_per_s_slows_monotonically_to_the_voltage_ove
     }
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_the_motion_is_continuous_in_the_inductance_down_to_zero);
     RUN_TEST(test_the_gap_to_the_quasi_static_motor_is_linear_in_its_time_constant);

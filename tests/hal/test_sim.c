@@ -12,39 +12,47 @@
 static mct_sim sim;
 static mct_hal hal;
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static mct_scene wheel(void) {
-    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC);
+static mct_scene wheel(void)
+{
+    mct_scene scene =
+        scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC);
     scene.initial[0] = 2;
     return scene;
 }
 
-static void begin(const mct_scene *scene) {
+static void begin(const mct_scene *scene)
+{
     mct_message why = {""};
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_sim_init(&sim, scene, &why), why.text);
     hal = mct_sim_hal(&sim);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context));
 }
 
-static mct_reading read_once(void) {
+static mct_reading read_once(void)
+{
     mct_reading reading;
     memset(&reading, 0xA5, sizeof reading);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->read(hal.context, &reading));
     return reading;
 }
 
-static void drive(int tick) {
+static void drive(int tick)
+{
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->write(hal.context, (mct_real)(10 * sin(0.005 * tick))));
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->wait_tick(hal.context));
 }
 
 /* To the count, but where rounding of the plant's angle may decide. */
-static void test_counts_are_the_plants_angles_in_counts_since_the_start(void) {
+static void test_counts_are_the_plants_angles_in_counts_since_the_start(void)
+{
     const mct_scene scene = wheel();
     begin(&scene);
     for (int k = 0; k < 20000; k++) {
@@ -60,7 +68,8 @@ static void test_counts_are_the_plants_angles_in_counts_since_the_start(void) {
     TEST_ASSERT_TRUE(fabs(mct_plant_value(&sim.plant, 1)) > TURN);
 }
 
-static void test_a_narrow_counter_shows_the_low_bits_of_a_wide_one(void) {
+static void test_a_narrow_counter_shows_the_low_bits_of_a_wide_one(void)
+{
     static const int widths[] = {8, 12, 16, 24};
     for (int n = 0; n < 4; n++) {
         mct_scene scene = wheel();
@@ -82,7 +91,8 @@ static void test_a_narrow_counter_shows_the_low_bits_of_a_wide_one(void) {
     }
 }
 
-static void test_a_cart_counts_by_the_metre(void) {
+static void test_a_cart_counts_by_the_metre(void)
+{
     mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, MCT_GRAVITY);
     scene.initial[0] = -0.1;
     scene.initial[2] = 0.5;
@@ -94,8 +104,10 @@ static void test_a_cart_counts_by_the_metre(void) {
     }
 }
 
-/* Standing still: mean 0, the standard deviation asked for (with that of rounding, 1/12), no memory, none between encoders. */
-static void test_noise_has_its_statistics_and_no_memory(void) {
+/* Standing still: mean 0, the standard deviation asked for (with that of rounding, 1/12), no memory, none
+ * between encoders. */
+static void test_noise_has_its_statistics_and_no_memory(void)
+{
     enum { SAMPLES = 200000 };
     mct_scene scene = wheel();
     scene.effects = 0;
@@ -116,17 +128,20 @@ static void test_noise_has_its_statistics_and_no_memory(void) {
     }
     const double variance = square / SAMPLES;
     const double expected = 9 + 1.0 / 12;
-    printf("noise: mean %.4f, standard deviation %.4f, kurtosis %.3f, correlations %.4f %.4f\n", sum / SAMPLES, sqrt(variance),
-           fourth / SAMPLES / (variance * variance), lagged / square, cross / square);
+    printf("noise: mean %.4f, standard deviation %.4f, kurtosis %.3f, correlations %.4f %.4f\n",
+           sum / SAMPLES, sqrt(variance), fourth / SAMPLES / (variance * variance), lagged / square,
+           cross / square);
     /* five standard errors of each */
     TEST_ASSERT_DOUBLE_WITHIN(5 * 3 / sqrt(SAMPLES), 0, sum / SAMPLES);
     TEST_ASSERT_DOUBLE_WITHIN(5 * expected * sqrt(2.0 / SAMPLES), expected, variance);
     TEST_ASSERT_DOUBLE_WITHIN(5 / sqrt(SAMPLES), 0, lagged / square);
     TEST_ASSERT_DOUBLE_WITHIN(5 / sqrt(SAMPLES), 0, cross / square);
-    TEST_ASSERT_DOUBLE_WITHIN(0.1, 2.7, fourth / SAMPLES / (variance * variance)); /* of a sum of four uniform numbers */
+    TEST_ASSERT_DOUBLE_WITHIN(
+        0.1, 2.7, fourth / SAMPLES / (variance * variance)); /* of a sum of four uniform numbers */
 }
 
-static void test_the_same_seed_gives_the_same_counts_and_another_seed_others(void) {
+static void test_the_same_seed_gives_the_same_counts_and_another_seed_others(void)
+{
     static int32_t first[1000];
     mct_scene scene = wheel();
     scene.noise = 1;
@@ -144,7 +159,8 @@ static void test_the_same_seed_gives_the_same_counts_and_another_seed_others(voi
     }
 }
 
-static void test_latency_delivers_the_counts_of_that_many_ticks_ago_and_their_age(void) {
+static void test_latency_delivers_the_counts_of_that_many_ticks_ago_and_their_age(void)
+{
     static int32_t fresh[500][2];
     for (int latency = 0; latency <= MCT_MAX_LATENCY; latency++) {
         mct_scene scene = wheel();
@@ -163,11 +179,14 @@ static void test_latency_delivers_the_counts_of_that_many_ticks_ago_and_their_ag
     }
 }
 
-static void test_faults_begin_and_end_on_their_ticks(void) {
+static void test_faults_begin_and_end_on_their_ticks(void)
+{
     static const struct {
         int fault;
         uint32_t flags;
-    } cases[] = {{MCT_SENSOR_FAULT_NAN, MCT_READING_INVALID}, {MCT_SENSOR_FAULT_SILENT, MCT_READING_MISSING}, {MCT_SENSOR_FAULT_FROZEN, 0}};
+    } cases[] = {{MCT_SENSOR_FAULT_NAN, MCT_READING_INVALID},
+                 {MCT_SENSOR_FAULT_SILENT, MCT_READING_MISSING},
+                 {MCT_SENSOR_FAULT_FROZEN, 0}};
     for (int n = 0; n < 3; n++) {
         mct_scene scene = wheel();
         scene.sensor_fault = cases[n].fault;
@@ -192,7 +211,8 @@ static void test_faults_begin_and_end_on_their_ticks(void) {
     }
 }
 
-static void test_open_stop_and_close_leave_the_motor_at_zero_volts(void) {
+static void test_open_stop_and_close_leave_the_motor_at_zero_volts(void)
+{
     const mct_scene scene = wheel();
     begin(&scene);
     hal.ops->wait_tick(hal.context);
@@ -207,7 +227,8 @@ static void test_open_stop_and_close_leave_the_motor_at_zero_volts(void) {
     }
 }
 
-static void test_lockstep_time_knows_no_jitter_and_the_plants_state_is_there_to_see(void) {
+static void test_lockstep_time_knows_no_jitter_and_the_plants_state_is_there_to_see(void)
+{
     const mct_scene scene = wheel();
     begin(&scene);
     for (int k = 0; k < 100; k++) {
@@ -220,7 +241,8 @@ static void test_lockstep_time_knows_no_jitter_and_the_plants_state_is_there_to_
     TEST_ASSERT_EQUAL_UINT64(100, sim.plant.tick);
 }
 
-static void test_a_variation_changes_the_plant_and_nothing_else(void) {
+static void test_a_variation_changes_the_plant_and_nothing_else(void)
+{
     mct_scene scene = wheel();
     scene.variation_spread = 0.1;
     scene.variation_seed = 4;
@@ -229,12 +251,15 @@ static void test_a_variation_changes_the_plant_and_nothing_else(void) {
     mct_scene_vary(&scene, &varied);
     mct_plant plant;
     start_plant(&plant, &varied);
-    TEST_ASSERT_EQUAL_MEMORY(&plant.constants.reaction_wheel.motor, &sim.plant.constants.reaction_wheel.motor, sizeof(mct_motor));
-    TEST_ASSERT_TRUE(plant.constants.reaction_wheel.wheel_inertia == sim.plant.constants.reaction_wheel.wheel_inertia);
+    TEST_ASSERT_EQUAL_MEMORY(&plant.constants.reaction_wheel.motor, &sim.plant.constants.reaction_wheel.motor,
+                             sizeof(mct_motor));
+    TEST_ASSERT_TRUE(plant.constants.reaction_wheel.wheel_inertia ==
+                     sim.plant.constants.reaction_wheel.wheel_inertia);
     TEST_ASSERT_TRUE(varied.parameters[0] != scene.parameters[0]);
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_counts_are_the_plants_angles_in_counts_since_the_start);
     RUN_TEST(test_a_narrow_counter_shows_the_low_bits_of_a_wide_one);

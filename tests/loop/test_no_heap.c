@@ -1,4 +1,5 @@
-/* After init, the loop and the sim HAL do not touch the heap: counted by functions that stand in for the C library's. */
+/* After init, the loop and the sim HAL do not touch the heap: counted by functions that stand in for the C
+ * library's. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,10 +9,12 @@
 #include "support/swing_up.h"
 #include "unity.h"
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 static long calls;
@@ -24,27 +27,32 @@ extern void *__libc_realloc(void *old, size_t size);
 extern void __libc_free(void *memory);
 extern void *__libc_memalign(size_t alignment, size_t size);
 
-void *malloc(size_t size) {
+void *malloc(size_t size)
+{
     calls++;
     return __libc_malloc(size);
 }
 
-void *calloc(size_t count, size_t size) {
+void *calloc(size_t count, size_t size)
+{
     calls++;
     return __libc_calloc(count, size);
 }
 
-void *realloc(void *old, size_t size) {
+void *realloc(void *old, size_t size)
+{
     calls++;
     return __libc_realloc(old, size);
 }
 
-void free(void *memory) {
+void free(void *memory)
+{
     calls++;
     __libc_free(memory);
 }
 
-void *aligned_alloc(size_t alignment, size_t size) {
+void *aligned_alloc(size_t alignment, size_t size)
+{
     calls++;
     return __libc_memalign(alignment, size);
 }
@@ -52,14 +60,16 @@ void *aligned_alloc(size_t alignment, size_t size) {
 #define COUNTS 0
 #endif
 
-static void test_the_counter_sees_a_call(void) {
+static void test_the_counter_sees_a_call(void)
+{
     void *volatile memory = malloc(1);
     free(memory);
     TEST_ASSERT_TRUE(calls >= 2);
 }
 
 /* Init is held to the same, although only the run is promised. */
-static void test_a_run_of_loop_and_sim_uses_no_heap(void) {
+static void test_a_run_of_loop_and_sim_uses_no_heap(void)
+{
     static mct_loop loop;
     static mct_sim sim;
     static mct_ring ring;
@@ -71,7 +81,8 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void) {
         memset(&ring, 0, sizeof ring);
         mct_status status = mct_sim_init(&sim, &scene, NULL);
         const mct_hal hal = mct_sim_hal(&sim);
-        status = status == MCT_OK ? mct_loop_init(&loop, &scene, hal, &ring, (mct_samples){NULL, 0}, NULL) : status;
+        status = status == MCT_OK ? mct_loop_init(&loop, &scene, hal, &ring, (mct_samples){NULL, 0}, NULL)
+                                  : status;
         status = status == MCT_OK ? hal.ops->open(hal.context) : status;
         for (int k = 0; k < 12000; k++) { /* past a swing-up, and past a full ring */
             mct_loop_tick(&loop);
@@ -86,10 +97,12 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void) {
     }
 }
 
-int main(void) {
+int main(void)
+{
     const char *const sanitizers = getenv("MCTAU_SANITIZE");
     if (!COUNTS || (sanitizers != NULL && sanitizers[0] != 0)) {
-        puts("skipped: the heap of this build cannot be counted (sanitizers, or another C library than glibc)");
+        puts("skipped: the heap of this build cannot be counted (sanitizers, or another C library than "
+             "glibc)");
         return 77;
     }
     UNITY_BEGIN();

@@ -7,16 +7,20 @@
 
 #define TURN 6.283185307179586
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 static const double bad_inputs[] = {NAN, INFINITY, -INFINITY};
 
-/* Not finite: counted, the last valid input is held, and not a bit differs from a run that was given that input. */
-static void test_an_input_that_is_not_finite_is_refused_counted_and_the_last_one_held(void) {
+/* Not finite: counted, the last valid input is held, and not a bit differs from a run that was given that
+ * input. */
+static void test_an_input_that_is_not_finite_is_refused_counted_and_the_last_one_held(void)
+{
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         const mct_scene scene = scene_of(system, MCT_STEPPER_LEAP, mct_systems[system]->standard_effects);
         mct_plant plant;
@@ -35,7 +39,8 @@ static void test_an_input_that_is_not_finite_is_refused_counted_and_the_last_one
     }
 }
 
-static void test_a_bad_first_input_leaves_the_plant_at_zero_volts(void) {
+static void test_a_bad_first_input_leaves_the_plant_at_zero_volts(void)
+{
     const mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_MOTOR_QUASI_STATIC);
     mct_plant plant;
     start_plant(&plant, &scene);
@@ -45,7 +50,8 @@ static void test_a_bad_first_input_leaves_the_plant_at_zero_volts(void) {
 }
 
 /* rk4 far beyond its stability: the state before stays, to the last bit, and each refusal is counted. */
-static void test_a_result_that_has_blown_up_is_refused_and_the_state_kept(void) {
+static void test_a_result_that_has_blown_up_is_refused_and_the_state_kept(void)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_MOTOR_INDUCTIVE);
     *parameter_of(&scene, "inductance") = 1e-9;
     mct_plant plant;
@@ -64,10 +70,11 @@ static void test_a_result_that_has_blown_up_is_refused_and_the_state_kept(void) 
 }
 
 /*
- * An arm that goes round: the plant, which takes turns out, against its bare kernel, which does not. Tolerance: the roundings of
- * the kernel's own, growing angle, 300 rad at the end, over 20 s.
+ * An arm that goes round: the plant, which takes turns out, against its bare kernel, which does not.
+ * Tolerance: the roundings of the kernel's own, growing angle, 300 rad at the end, over 20 s.
  */
-static void test_taking_turns_out_changes_neither_value_nor_motion(void) {
+static void test_taking_turns_out_changes_neither_value_nor_motion(void)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_LEAP, MCT_GRAVITY);
     scene.initial[0] = 1;
     scene.initial[2] = 16; /* over the top, again and again */
@@ -84,15 +91,19 @@ static void test_taking_turns_out_changes_neither_value_nor_motion(void) {
         turned += plant.state.turns[0] != before;
         for (int i = 0; i < 4; i++) {
             const double tolerance = 4000 * (double)MCT_REAL_EPSILON * (i < 2 ? 300 : 20);
-            TEST_ASSERT_DOUBLE_WITHIN(tolerance, (double)bare.state.x[i] + (double)bare.state.c[i], mct_plant_value(&plant, i));
+            TEST_ASSERT_DOUBLE_WITHIN(tolerance, (double)bare.state.x[i] + (double)bare.state.c[i],
+                                      mct_plant_value(&plant, i));
         }
-        TEST_ASSERT_TRUE(fabs((double)plant.state.x[0]) <= TURN * 1.01 && fabs((double)plant.state.x[1]) <= TURN * 1.01);
+        TEST_ASSERT_TRUE(fabs((double)plant.state.x[0]) <= TURN * 1.01 &&
+                         fabs((double)plant.state.x[1]) <= TURN * 1.01);
     }
     TEST_ASSERT_TRUE(turned > 20);
 }
 
-/* The same start some turns away moves the same way. What double cannot hold of a start grows, but slowly on this scene. */
-static void test_a_start_that_is_whole_turns_away_moves_the_same_way(void) {
+/* The same start some turns away moves the same way. What double cannot hold of a start grows, but slowly on
+ * this scene. */
+static void test_a_start_that_is_whole_turns_away_moves_the_same_way(void)
+{
     static const int turns[] = {1, -1, 5, -1000};
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         const int upright = mct_systems[system]->upright_coordinate;
@@ -110,14 +121,16 @@ static void test_a_start_that_is_whole_turns_away_moves_the_same_way(void) {
             for (int i = 0; i < 4; i++) {
                 const double shift = i == upright ? turns[n] * TURN : 0;
                 const double rounding = fabs(turns[n] * TURN) * 1e-15 + 100 * (double)MCT_REAL_EPSILON;
-                TEST_ASSERT_DOUBLE_WITHIN(20 * rounding, mct_plant_value(&home, i) + shift, mct_plant_value(&plant, i));
+                TEST_ASSERT_DOUBLE_WITHIN(20 * rounding, mct_plant_value(&home, i) + shift,
+                                          mct_plant_value(&plant, i));
             }
         }
     }
 }
 
 /* 1e4 rad/s for 100 s, 1.6e5 turns: the angle is the rate times the time. */
-static void test_a_wheel_at_1e4_rad_per_s_keeps_its_angle(void) {
+static void test_a_wheel_at_1e4_rad_per_s_keeps_its_angle(void)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, 0);
     scene.initial[0] = 0;
     scene.initial[3] = 1e4;
@@ -131,7 +144,8 @@ static void test_a_wheel_at_1e4_rad_per_s_keeps_its_angle(void) {
 }
 
 /* Odd numbers of turns a tick, whose product with a rounded turn is not exact. */
-static void test_several_turns_taken_out_of_one_tick_lose_nothing(void) {
+static void test_several_turns_taken_out_of_one_tick_lose_nothing(void)
+{
     mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, 0);
     scene.initial[0] = 0;
     scene.initial[3] = 45000;
@@ -143,20 +157,24 @@ static void test_several_turns_taken_out_of_one_tick_lose_nothing(void) {
         const mct_state before = plant.state;
         bare.state = before;
         bare.kernel(&bare.constants, &bare.state, 0, 1);
-        const double moved = ((double)bare.state.x[1] - (double)before.x[1]) + ((double)bare.state.c[1] - (double)before.c[1]);
+        const double moved =
+            ((double)bare.state.x[1] - (double)before.x[1]) + ((double)bare.state.c[1] - (double)before.c[1]);
         mct_plant next = plant;
         mct_plant_step(&next, 0);
-        const double kept = ((double)next.state.x[1] - (double)before.x[1]) + ((double)next.state.c[1] - (double)before.c[1]) +
+        const double kept = ((double)next.state.x[1] - (double)before.x[1]) +
+                            ((double)next.state.c[1] - (double)before.c[1]) +
                             (next.state.turns[1] - before.turns[1]) * TURN;
         /* far below a rounding of the angle: compensation has twice the precision */
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * 45 * (double)MCT_REAL_EPSILON + 1e-14, moved, kept);
     }
 }
 
-static void test_upright_exactly_stays_upright_for_1e6_ticks(void) {
+static void test_upright_exactly_stays_upright_for_1e6_ticks(void)
+{
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
-            mct_scene scene = scene_of(system, stepper, mct_systems[system]->standard_effects & ~(uint32_t)MCT_MOTOR_INDUCTIVE);
+            mct_scene scene = scene_of(
+                system, stepper, mct_systems[system]->standard_effects & ~(uint32_t)MCT_MOTOR_INDUCTIVE);
             if (mct_systems[system]->kernel(stepper, scene.effects) == NULL) {
                 continue;
             }
@@ -171,7 +189,8 @@ static void test_upright_exactly_stays_upright_for_1e6_ticks(void) {
     }
 }
 
-static void test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only(void) {
+static void test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only(void)
+{
     static const struct {
         uint32_t effects;
         bool bounded;
@@ -193,7 +212,8 @@ static void test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only(
     }
 }
 
-static void test_a_stepper_that_does_not_suit_is_refused_with_a_sentence(void) {
+static void test_a_stepper_that_does_not_suit_is_refused_with_a_sentence(void)
+{
     const mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_EXPO, MCT_GRAVITY);
     mct_plant plant;
     mct_message why = {""};
@@ -202,7 +222,8 @@ static void test_a_stepper_that_does_not_suit_is_refused_with_a_sentence(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_UNSUITED, mct_plant_init(&plant, &scene, NULL));
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_an_input_that_is_not_finite_is_refused_counted_and_the_last_one_held);
     RUN_TEST(test_a_bad_first_input_leaves_the_plant_at_zero_volts);

@@ -7,36 +7,43 @@
 
 #define DEGREES 57.29577951308232
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static swing_up run_default(int system) {
+static swing_up run_default(int system)
+{
     const mct_scene scene = swing_up_scene(system);
     const swing_up run = run_swing_up(&scene, 30, 10);
-    printf("%s: upright from %.3f s, then within %.4f degrees; at the end rate %.3g; cart or arm at %.3g, at most %.3f\n",
-           mct_systems[system]->name, run.upright_time, run.deviation * DEGREES, run.wheel_rate, run.cart_position,
-           run.farthest);
+    printf("%s: upright from %.3f s, then within %.4f degrees; at the end rate %.3g; cart or arm at %.3g, at "
+           "most %.3f\n",
+           mct_systems[system]->name, run.upright_time, run.deviation * DEGREES, run.wheel_rate,
+           run.cart_position, run.farthest);
     TEST_ASSERT_TRUE(run.upright_time <= 10);
     TEST_ASSERT_TRUE(run.deviation * DEGREES < 2);
     TEST_ASSERT_EQUAL_UINT32(0, run.faults);
     return run;
 }
 
-static void test_the_reaction_wheel_is_upright_within_10_s_and_within_2_degrees_until_30_s(void) {
+static void test_the_reaction_wheel_is_upright_within_10_s_and_within_2_degrees_until_30_s(void)
+{
     TEST_ASSERT_TRUE(run_default(REACTION_WHEEL).wheel_rate < 20);
 }
 
-static void test_the_cart_pole_is_upright_within_10_s_and_within_2_degrees_until_30_s(void) {
+static void test_the_cart_pole_is_upright_within_10_s_and_within_2_degrees_until_30_s(void)
+{
     const swing_up run = run_default(CART_POLE);
     TEST_ASSERT_TRUE(run.cart_position < 0.03);
     TEST_ASSERT_TRUE(run.farthest < 0.4); /* the track */
 }
 
 /* The other motors and steppers, and a plant that starts elsewhere. */
-static void test_the_swing_up_does_not_hang_on_stepper_or_motor_or_start(void) {
+static void test_the_swing_up_does_not_hang_on_stepper_or_motor_or_start(void)
+{
     static const double starts[] = {0.1, 2.0, -2.5, 9.5};
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         for (int k = 0; k < 4; k++) {
@@ -54,7 +61,8 @@ static void test_the_swing_up_does_not_hang_on_stepper_or_motor_or_start(void) {
     }
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_the_reaction_wheel_is_upright_within_10_s_and_within_2_degrees_until_30_s);
     RUN_TEST(test_the_cart_pole_is_upright_within_10_s_and_within_2_degrees_until_30_s);

@@ -3,21 +3,26 @@
 #include "support/swing_up.h"
 #include "unity.h"
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static void test_variations_that_the_controller_does_not_know_swing_up_and_balance(void) {
+static void test_variations_that_the_controller_does_not_know_swing_up_and_balance(void)
+{
     check_variations(REACTION_WHEEL, false);
 }
 
-static void test_variations_that_the_controller_knows_swing_up_and_balance(void) {
+static void test_variations_that_the_controller_knows_swing_up_and_balance(void)
+{
     check_variations(REACTION_WHEEL, true);
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_variations_that_the_controller_does_not_know_swing_up_and_balance);
     RUN_TEST(test_variations_that_the_controller_knows_swing_up_and_balance);

@@ -1,18 +1,22 @@
-/* The reference is worth its name: two integrators that share only the equations agree, and halving changes nothing. */
+/* The reference is worth its name: two integrators that share only the equations agree, and halving changes
+ * nothing. */
 #include <stdio.h>
 
 #include "support/reference.h"
 #include "support/scenes.h"
 #include "unity.h"
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 /* Largest difference of two states, each entry relative to 1 or its size. */
-static double difference(const quad *a, const quad *b) {
+static double difference(const quad *a, const quad *b)
+{
     double worst = 0;
     for (int i = 0; i < REFERENCE_STATES; i++) {
         const double size = (double)(a[i] < 0 ? -a[i] : a[i]);
@@ -22,13 +26,16 @@ static double difference(const quad *a, const quad *b) {
     return worst;
 }
 
-static mct_scene stiff_wheel(double time_constant) {
-    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE);
+static mct_scene stiff_wheel(double time_constant)
+{
+    mct_scene scene =
+        scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE);
     *parameter_of(&scene, "inductance") = time_constant * *parameter_of(&scene, "resistance");
     return scene;
 }
 
-static void test_halving_the_steps_of_the_extrapolation_changes_less_than_1e_16(void) {
+static void test_halving_the_steps_of_the_extrapolation_changes_less_than_1e_16(void)
+{
     static const double start[] = {0.3, 2.0, -0.5, 1.0, 0};
     const mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_VISCOUS);
     const reference_model model = reference_of(&scene);
@@ -42,7 +49,8 @@ static void test_halving_the_steps_of_the_extrapolation_changes_less_than_1e_16(
     TEST_ASSERT_TRUE(difference(coarse, fine) < 1e-16);
 }
 
-static void test_the_reference_conserves_energy_where_nothing_dissipates(void) {
+static void test_the_reference_conserves_energy_where_nothing_dissipates(void)
+{
     static const double start[] = {0, 2.0, 0, 0, 0};
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         const mct_scene scene = scene_of(system, MCT_STEPPER_RK4, MCT_GRAVITY);
@@ -58,7 +66,8 @@ static void test_the_reference_conserves_energy_where_nothing_dissipates(void) {
     }
 }
 
-static void test_both_integrators_agree_through_jumps_of_the_voltage_at_any_time_constant(void) {
+static void test_both_integrators_agree_through_jumps_of_the_voltage_at_any_time_constant(void)
+{
     static const double time_constants[] = {10e-6, 100e-6, 1e-3, 5e-3};
     static const double start[] = {2.0, 0.4, 0.5, -30, 0.1};
     static reference_flow flow;
@@ -81,7 +90,8 @@ static void test_both_integrators_agree_through_jumps_of_the_voltage_at_any_time
     }
 }
 
-static void test_halving_the_windows_of_the_flow_changes_less_than_1e_16(void) {
+static void test_halving_the_windows_of_the_flow_changes_less_than_1e_16(void)
+{
     static const double start[] = {2.0, 0, 0, 0, 0};
     static reference_flow coarse;
     static reference_flow fine;
@@ -103,7 +113,8 @@ static void test_halving_the_windows_of_the_flow_changes_less_than_1e_16(void) {
     TEST_ASSERT_TRUE(difference(a, b) < 1e-16);
 }
 
-int main(void) {
+int main(void)
+{
     if (!HAVE_REFERENCE) {
         puts("skipped: this compiler has no quadruple precision");
         return 77;

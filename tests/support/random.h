@@ -9,7 +9,8 @@ typedef struct {
     uint64_t state; /* not 0 */
 } test_random;
 
-static inline uint64_t random_bits(test_random *self) {
+static inline uint64_t random_bits(test_random *self)
+{
     self->state ^= self->state >> 12;
     self->state ^= self->state << 25;
     self->state ^= self->state >> 27;
@@ -17,12 +18,14 @@ static inline uint64_t random_bits(test_random *self) {
 }
 
 /* Uniform in [low, high). */
-static inline double random_in(test_random *self, double low, double high) {
+static inline double random_in(test_random *self, double low, double high)
+{
     return low + (high - low) * ((double)(random_bits(self) >> 11) * 0x1p-53);
 }
 
 /* Its logarithm is uniform: every order of magnitude between low and high, both positive, is as likely. */
-static inline double random_scale(test_random *self, double low, double high) {
+static inline double random_scale(test_random *self, double low, double high)
+{
     return exp(random_in(self, log(low), log(high)));
 }
 

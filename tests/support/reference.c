@@ -6,23 +6,39 @@
 
 #if HAVE_REFERENCE
 #include <quadmath.h>
-#define sine sinq
-#define cosine cosq
-#define size_of fabsq
+#define sine       sinq
+#define cosine     cosq
+#define size_of    fabsq
 #define arctangent atanq
 #else
 #include <math.h>
-#define sine sinl
-#define cosine cosl
-#define size_of fabsl
+#define sine       sinl
+#define cosine     cosl
+#define size_of    fabsl
 #define arctangent atanl
 #endif
 
 /* Parameters in the order of the systems' tables. */
 enum { M1, M2, LENGTH, K1, K2, CART_DRY, POLE_DRY, G, KT, KB, R, L, GEAR, PULLEY };
-enum { WHEEL_M, WHEEL_I, ARM_L, ARM_I, ARM_S, WHEEL_G, NU1, NU2, DRY1, DRY2, WHEEL_KT, WHEEL_KB, WHEEL_R, WHEEL_L };
+enum {
+    WHEEL_M,
+    WHEEL_I,
+    ARM_L,
+    ARM_I,
+    ARM_S,
+    WHEEL_G,
+    NU1,
+    NU2,
+    DRY1,
+    DRY2,
+    WHEEL_KT,
+    WHEEL_KB,
+    WHEEL_R,
+    WHEEL_L
+};
 
-reference_model reference_of(const mct_scene *scene) {
+reference_model reference_of(const mct_scene *scene)
+{
     reference_model model = {.system = scene->system, .effects = mct_scene_effects(scene)};
     model.states = mct_state_count(mct_systems[scene->system], model.effects);
     for (int i = 0; i < MCT_MAX_PARAMETERS; i++) {
@@ -31,14 +47,16 @@ reference_model reference_of(const mct_scene *scene) {
     return model;
 }
 
-void reference_start(const reference_model *model, const double *from, quad *x) {
+void reference_start(const reference_model *model, const double *from, quad *x)
+{
     for (int i = 0; i < REFERENCE_STATES; i++) {
         x[i] = i < model->states ? from[i] : 0;
     }
 }
 
 /* Solves M a = f by elimination with row pivoting. */
-static void eliminate(quad M[2][2], quad *f, quad *a) {
+static void eliminate(quad M[2][2], quad *f, quad *a)
+{
     const int first = size_of(M[1][0]) > size_of(M[0][0]) ? 1 : 0;
     const int second = 1 - first;
     const quad factor = M[second][0] / M[first][0];
@@ -46,8 +64,10 @@ static void eliminate(quad M[2][2], quad *f, quad *a) {
     a[0] = (f[first] - M[first][1] * a[1]) / M[first][0];
 }
 
-/* Force of the motor on its coordinate, whose motor turns `ratio` times as fast, and the rate of the current. */
-static quad drive(const reference_model *model, quad ratio, int kt, quad current, quad rate, quad u, quad *di) {
+/* Force of the motor on its coordinate, whose motor turns `ratio` times as fast, and the rate of the current.
+ */
+static quad drive(const reference_model *model, quad ratio, int kt, quad current, quad rate, quad u, quad *di)
+{
     const quad *p = model->p;
     const quad emf = p[kt + 1] * ratio * rate;
     *di = 0;
@@ -61,7 +81,8 @@ static quad drive(const reference_model *model, quad ratio, int kt, quad current
     return u;
 }
 
-void reference_rate(const reference_model *model, const quad *x, quad u, quad *dx) {
+void reference_rate(const reference_model *model, const quad *x, quad u, quad *dx)
+{
     const quad *p = model->p;
     const bool gravity = model->effects & MCT_GRAVITY;
     const bool viscous = model->effects & MCT_VISCOUS;
@@ -74,7 +95,8 @@ void reference_rate(const reference_model *model, const quad *x, quad u, quad *d
         M[0][0] = p[M1] + p[M2];
         M[0][1] = M[1][0] = p[M2] * p[LENGTH] * c;
         M[1][1] = p[M2] * p[LENGTH] * p[LENGTH];
-        f[0] = drive(model, p[GEAR] / p[PULLEY], KT, x[4], x[2], u, &di) + p[M2] * p[LENGTH] * s * x[3] * x[3];
+        f[0] =
+            drive(model, p[GEAR] / p[PULLEY], KT, x[4], x[2], u, &di) + p[M2] * p[LENGTH] * s * x[3] * x[3];
         f[1] = gravity ? p[M2] * p[G] * p[LENGTH] * s : 0;
         f[0] -= viscous ? p[K1] * x[2] : 0;
         f[1] -= viscous ? p[K2] * x[3] : 0;
@@ -92,10 +114,12 @@ void reference_rate(const reference_model *model, const quad *x, quad u, quad *d
     dx[4] = di;
 }
 
-quad reference_energy(const reference_model *model, const quad *x) {
+quad reference_energy(const reference_model *model, const quad *x)
+{
     const quad *p = model->p;
     const quad gravity = (model->effects & MCT_GRAVITY) ? 1 : 0;
-    const quad inductance = (model->effects & MCT_MOTOR_INDUCTIVE) ? p[model->system == CART_POLE ? L : WHEEL_L] : 0;
+    const quad inductance =
+        (model->effects & MCT_MOTOR_INDUCTIVE) ? p[model->system == CART_POLE ? L : WHEEL_L] : 0;
     const quad magnetic = inductance * x[4] * x[4] / 2;
     if (model->system == CART_POLE) {
         const quad right = x[2] + p[LENGTH] * cosine(x[1]) * x[3];
@@ -112,7 +136,9 @@ quad reference_energy(const reference_model *model, const quad *x) {
 enum { COLUMNS = 9, ALL = REFERENCE_STATES };
 
 /* Gragg's modified midpoint rule over H in n substeps. */
-static void midpoint(const reference_model *model, const quad *x, const quad *first_rate, quad u, quad H, int n, quad *end) {
+static void midpoint(const reference_model *model, const quad *x, const quad *first_rate, quad u, quad H,
+                     int n, quad *end)
+{
     const quad h = H / n;
     quad before[ALL];
     quad now[ALL];
@@ -132,7 +158,8 @@ static void midpoint(const reference_model *model, const quad *x, const quad *fi
     memcpy(end, now, sizeof now);
 }
 
-static void extrapolate_once(const reference_model *model, quad *x, quad u, quad H) {
+static void extrapolate_once(const reference_model *model, quad *x, quad u, quad H)
+{
     quad table[COLUMNS][ALL];
     quad rate[ALL];
     reference_rate(model, x, u, rate);
@@ -149,7 +176,8 @@ static void extrapolate_once(const reference_model *model, quad *x, quad u, quad
     memcpy(x, table[0], sizeof table[0]);
 }
 
-void reference_extrapolate(const reference_model *model, quad *x, quad u, quad duration, long steps) {
+void reference_extrapolate(const reference_model *model, quad *x, quad u, quad duration, long steps)
+{
     for (long k = 0; k < steps; k++) {
         extrapolate_once(model, x, u, duration / steps);
     }
@@ -159,7 +187,8 @@ void reference_extrapolate(const reference_model *model, quad *x, quad u, quad d
 
 enum { NODES = REFERENCE_NODES, SIZE = ALL + 1 + NODES };
 
-static void multiply(quad a[SIZE][SIZE], quad b[SIZE][SIZE], quad product[SIZE][SIZE]) {
+static void multiply(quad a[SIZE][SIZE], quad b[SIZE][SIZE], quad product[SIZE][SIZE])
+{
     for (int i = 0; i < SIZE; i++) {
         for (int j = 0; j < SIZE; j++) {
             quad sum = 0;
@@ -174,7 +203,8 @@ static void multiply(quad a[SIZE][SIZE], quad b[SIZE][SIZE], quad product[SIZE][
 }
 
 /* e^a by a Taylor sum of a / 2^k, squared k times. */
-static void exponential(quad a[SIZE][SIZE], quad x[SIZE][SIZE]) {
+static void exponential(quad a[SIZE][SIZE], quad x[SIZE][SIZE])
+{
     quad largest = 0;
     for (int i = 0; i < SIZE; i++) {
         for (int j = 0; j < SIZE; j++) {
@@ -212,8 +242,10 @@ static void exponential(quad a[SIZE][SIZE], quad x[SIZE][SIZE]) {
     }
 }
 
-/* Inverse of the Vandermonde matrix of the nodes: powers[m][k] is the factor of t^m in the k-th Lagrange polynomial. */
-static void lagrange(const quad *nodes, quad powers[NODES][NODES]) {
+/* Inverse of the Vandermonde matrix of the nodes: powers[m][k] is the factor of t^m in the k-th Lagrange
+ * polynomial. */
+static void lagrange(const quad *nodes, quad powers[NODES][NODES])
+{
     for (int k = 0; k < NODES; k++) {
         quad polynomial[NODES + 1] = {1};
         int degree = 0;
@@ -235,7 +267,8 @@ static void lagrange(const quad *nodes, quad powers[NODES][NODES]) {
 }
 
 /* The linear part, seen from outside: the rates that unit states and a unit input cause without gravity. */
-static void linear_part(const reference_model *model, quad A[ALL][ALL], quad *B, quad *e) {
+static void linear_part(const reference_model *model, quad A[ALL][ALL], quad *B, quad *e)
+{
     reference_model weightless = *model;
     weightless.effects &= ~(uint32_t)MCT_GRAVITY;
     const quad none[ALL] = {0};
@@ -254,7 +287,8 @@ static void linear_part(const reference_model *model, quad A[ALL][ALL], quad *B,
     reference_rate(model, level, 0, e);
 }
 
-static void prepare_window(const reference_model *model, quad length, reference_window *window) {
+static void prepare_window(const reference_model *model, quad length, reference_window *window)
+{
     quad A[ALL][ALL];
     quad B[ALL];
     quad e[ALL];
@@ -301,7 +335,9 @@ static void prepare_window(const reference_model *model, quad length, reference_
     }
 }
 
-int reference_flow_prepare(reference_flow *self, const reference_model *model, double duration, double first, double longest) {
+int reference_flow_prepare(reference_flow *self, const reference_model *model, double duration, double first,
+                           double longest)
+{
     self->model = model;
     self->window_count = 0;
     quad left = duration;
@@ -322,7 +358,8 @@ int reference_flow_prepare(reference_flow *self, const reference_model *model, d
     return left > 0 ? 0 : self->window_count;
 }
 
-static quad from_state(const reference_window *window, int node, int i, const quad *x, quad u) {
+static quad from_state(const reference_window *window, int node, int i, const quad *x, quad u)
+{
     quad sum = window->input[node][i] * u;
     for (int k = 0; k < ALL; k++) {
         if (window->flow[node][i][k] != 0) {
@@ -332,7 +369,8 @@ static quad from_state(const reference_window *window, int node, int i, const qu
     return sum;
 }
 
-static void advance_window(const reference_window *window, quad *x, quad u) {
+static void advance_window(const reference_window *window, quad *x, quad u)
+{
     enum { MAX_ITERATIONS = 30 };
     quad base[NODES];
     quad force[NODES];
@@ -365,7 +403,8 @@ static void advance_window(const reference_window *window, quad *x, quad u) {
     memcpy(x, end, sizeof end);
 }
 
-void reference_flow_advance(const reference_flow *self, quad *x, quad u) {
+void reference_flow_advance(const reference_flow *self, quad *x, quad u)
+{
     for (int k = 0; k < self->window_count; k++) {
         advance_window(&self->windows[k], x, u);
     }

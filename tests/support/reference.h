@@ -1,12 +1,12 @@
 /*
  * An independent judge of motions, in quadruple precision.
  *
- * The equations stand in raw form: M and the forces as the Lagrangian gives them (eqs. 128 and 157 of the source, as
- * corrected), solved by Gaussian elimination; nothing of the closed forms in src/ is used. Two integrators that share
- * nothing but these equations watch over each other (tests/reference):
+ * The equations stand in raw form: M and the forces as the Lagrangian gives them (eqs. 128 and 157 of the
+ * source, as corrected), solved by Gaussian elimination; nothing of the closed forms in src/ is used. Two
+ * integrators that share nothing but these equations watch over each other (tests/reference):
  *     reference_extrapolate  Gragg's midpoint rule with Bulirsch-Stoer extrapolation, order 18, explicit
- *     reference_flow         for a stiff motor: variation of constants, the sine collocated at 8 nodes and iterated to
- *                            convergence; windows grow from the motor's time constant, so a jump of the voltage is resolved
+ *     reference_flow         for a stiff motor: variation of constants, the sine collocated at 8 nodes and
+ * iterated to convergence; windows grow from the motor's time constant, so a jump of the voltage is resolved
  */
 #ifndef MCT_TEST_REFERENCE_H
 #define MCT_TEST_REFERENCE_H
@@ -56,10 +56,12 @@ typedef struct {
 } reference_flow;
 
 /*
- * Prepares windows that add up to a duration: from `first` on, doubling up to `longest`, as often as it takes. Several
- * equal ones in a row share one entry. Reaction wheel only. Returns the number of windows, or 0 when they do not fit.
+ * Prepares windows that add up to a duration: from `first` on, doubling up to `longest`, as often as it
+ * takes. Several equal ones in a row share one entry. Reaction wheel only. Returns the number of windows, or
+ * 0 when they do not fit.
  */
-int reference_flow_prepare(reference_flow *self, const reference_model *model, double duration, double first, double longest);
+int reference_flow_prepare(reference_flow *self, const reference_model *model, double duration, double first,
+                           double longest);
 
 /* Advances x over the duration under a held input. */
 void reference_flow_advance(const reference_flow *self, quad *x, quad u);

@@ -5,7 +5,8 @@
 
 #include "unity.h"
 
-mct_scene scene_of(int system, int stepper, uint32_t effects) {
+mct_scene scene_of(int system, int stepper, uint32_t effects)
+{
     mct_scene scene;
     mct_scene_defaults(&scene, system);
     scene.stepper = stepper;
@@ -13,7 +14,8 @@ mct_scene scene_of(int system, int stepper, uint32_t effects) {
     return scene;
 }
 
-double *parameter_of(mct_scene *scene, const char *name) {
+double *parameter_of(mct_scene *scene, const char *name)
+{
     const mct_system *const system = mct_systems[scene->system];
     for (int i = 0; i < system->parameter_count; i++) {
         if (strcmp(system->parameters[i].name, name) == 0) {
@@ -24,30 +26,35 @@ double *parameter_of(mct_scene *scene, const char *name) {
     return NULL;
 }
 
-void start_plant(mct_plant *plant, const mct_scene *scene) {
+void start_plant(mct_plant *plant, const mct_scene *scene)
+{
     mct_message why = {""};
     const mct_status status = mct_plant_init(plant, scene, &why);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, status, why.text);
 }
 
-void step_plant(mct_plant *plant, mct_real input, long ticks) {
+void step_plant(mct_plant *plant, mct_real input, long ticks)
+{
     for (long k = 0; k < ticks; k++) {
         mct_plant_step(plant, input);
     }
 }
 
-double energy_of(const mct_plant *plant) {
+double energy_of(const mct_plant *plant)
+{
     mct_evaluation now;
     mct_plant_evaluate(plant, &now);
     return (double)now.kinetic_energy + (double)now.potential_energy + (double)now.magnetic_energy;
 }
 
-const char *motor_name(uint32_t effects) {
+const char *motor_name(uint32_t effects)
+{
     return (effects & MCT_MOTOR_INDUCTIVE)      ? "inductive"
            : (effects & MCT_MOTOR_QUASI_STATIC) ? "quasi_static"
                                                 : "off";
 }
 
-double angle_size(double angle) {
+double angle_size(double angle)
+{
     return fabs(remainder(angle, 6.283185307179586));
 }

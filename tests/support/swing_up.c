@@ -8,7 +8,8 @@
 
 #define TWO_DEGREES 0.0349065850398866
 
-mct_scene swing_up_scene(int system) {
+mct_scene swing_up_scene(int system)
+{
     mct_scene scene;
     mct_scene_defaults(&scene, system);
     scene.stepper = system == CART_POLE ? MCT_STEPPER_RK4 : MCT_STEPPER_EXPO;
@@ -18,13 +19,15 @@ mct_scene swing_up_scene(int system) {
     return scene;
 }
 
-swing_up run_swing_up(const mct_scene *scene, double duration, double settled) {
+swing_up run_swing_up(const mct_scene *scene, double duration, double settled)
+{
     static mct_loop loop; /* large, and no test has threads */
     static mct_sim sim;
     mct_message why = {""};
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_sim_init(&sim, scene, &why), why.text);
     const mct_hal hal = mct_sim_hal(&sim);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context));
     const int upright = sim.plant.system->upright_coordinate;
     swing_up result = {.upright_time = INFINITY, .reached_time = INFINITY};
@@ -51,7 +54,8 @@ swing_up run_swing_up(const mct_scene *scene, double duration, double settled) {
     return result;
 }
 
-void check_variations(int system, bool known) {
+void check_variations(int system, bool known)
+{
     enum { VARIATIONS = 500, ALLOWED_TO_FAIL = 5 };
     double worst_time = 0;
     double worst_deviation = 0;
@@ -71,11 +75,14 @@ void check_variations(int system, bool known) {
         }
         const swing_up run = run_swing_up(&scene, 40, 20);
         const double home = system == CART_POLE ? run.cart_position : run.wheel_rate;
-        const bool good = run.upright_time <= 20 && run.faults == 0 && home < (system == CART_POLE ? 0.03 : 20);
+        const bool good =
+            run.upright_time <= 20 && run.faults == 0 && home < (system == CART_POLE ? 0.03 : 20);
         if (!good) {
             failed++;
-            printf("  seed %d: upright from %.2f s (first %.2f s), %.3f degrees after 20 s, home %.3g, faults %#x\n", seed,
-                   run.upright_time, run.reached_time, run.deviation * 57.29578, home, (unsigned)run.faults);
+            printf("  seed %d: upright from %.2f s (first %.2f s), %.3f degrees after 20 s, home %.3g, "
+                   "faults %#x\n",
+                   seed, run.upright_time, run.reached_time, run.deviation * 57.29578, home,
+                   (unsigned)run.faults);
         } else {
             worst_time = fmax(worst_time, run.upright_time);
             worst_deviation = fmax(worst_deviation, run.deviation);
@@ -90,10 +97,11 @@ void check_variations(int system, bool known) {
             slowest[k - 1] = swap;
         }
     }
-    printf("%s, %s to the controller: %d of %d; upright after %.2f s (median), %.2f s (95 %%), %.2f s (worst good one); then "
+    printf("%s, %s to the controller: %d of %d; upright after %.2f s (median), %.2f s (95 %%), %.2f s (worst "
+           "good one); then "
            "within %.3f degrees; %s at the end %.3g\n",
-           mct_systems[system]->name, known ? "known" : "unknown", VARIATIONS - failed, VARIATIONS, slowest[VARIATIONS / 2],
-           slowest[VARIATIONS * 95 / 100], worst_time, worst_deviation * 57.29578,
+           mct_systems[system]->name, known ? "known" : "unknown", VARIATIONS - failed, VARIATIONS,
+           slowest[VARIATIONS / 2], slowest[VARIATIONS * 95 / 100], worst_time, worst_deviation * 57.29578,
            system == CART_POLE ? "cart [m]" : "wheel [rad/s]", worst_home);
     TEST_ASSERT_TRUE(failed <= ALLOWED_TO_FAIL);
 }

@@ -22,8 +22,9 @@ mct_scene swing_up_scene(int system);
 swing_up run_swing_up(const mct_scene *scene, double duration, double settled);
 
 /*
- * 500 variations: seeded parameters within 10 %, known to the controller or not, noise of 1 count, a tick of latency. At
- * least 99 % must be upright within 20 s, within 2 degrees until 40 s, with wheel or cart near home, without a fault.
+ * 500 variations: seeded parameters within 10 %, known to the controller or not, noise of 1 count, a tick of
+ * latency. At least 99 % must be upright within 20 s, within 2 degrees until 40 s, with wheel or cart near
+ * home, without a fault.
  */
 void check_variations(int system, bool known);
 

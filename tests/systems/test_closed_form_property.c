@@ -1,12 +1,15 @@
 /*
- * The closed forms against the generic Gauss engine, which gets nothing but h, the masses and what acts from outside.
+ * The closed forms against the generic Gauss engine, which gets nothing but h, the masses and what acts from
+ * outside.
  *
- * Forces on particles: weight; on the cart also the drive and the track's friction. Couples: friction of the pole's joint;
- * the wheel's motor and the friction of both its joints. They are computed here from the scene's parameters.
+ * Forces on particles: weight; on the cart also the drive and the track's friction. Couples: friction of the
+ * pole's joint; the wheel's motor and the friction of both its joints. They are computed here from the
+ * scene's parameters.
  *
- * Tolerances: 1e-12 in double, 300 roundings in float (constants are rounded once in each of the two ways), relative to the
- * size of the terms that meet in a result: by Cauchy-Schwarz a force on coordinate j is at most sqrt(M_jj) times the norm,
- * weighted by mass, of what acts and accelerates; an acceleration inherits |M^-1| times that.
+ * Tolerances: 1e-12 in double, 300 roundings in float (constants are rounded once in each of the two ways),
+ * relative to the size of the terms that meet in a result: by Cauchy-Schwarz a force on coordinate j is at
+ * most sqrt(M_jj) times the norm, weighted by mass, of what acts and accelerates; an acceleration inherits
+ * |M^-1| times that.
  */
 #include <math.h>
 #include <stdio.h>
@@ -24,10 +27,12 @@ enum { TRIALS = 10000, MOTORS = 3, N = 2 };
 
 static const uint32_t motors[MOTORS] = {0, MCT_MOTOR_QUASI_STATIC, MCT_MOTOR_INDUCTIVE};
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 /* One random case. */
@@ -50,7 +55,9 @@ typedef struct {
     double norm; /* of forces and accelerations, weighted by mass */
 } trial;
 
-static void place(const void *context, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3]) {
+static void place(const void *context, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
+{
     const trial *self = context;
     mct_hyperdual all[MCT_MAX_PARTICLES][3];
     self->system->place(&self->constants, time, q, all);
@@ -59,7 +66,8 @@ static void place(const void *context, mct_hyperdual time, const mct_hyperdual *
     }
 }
 
-static void randomise(trial *self, test_random *random, int system, uint32_t effects) {
+static void randomise(trial *self, test_random *random, int system, uint32_t effects)
+{
     memset(self, 0, sizeof *self);
     self->scene = scene_of(system, MCT_STEPPER_RK4, effects);
     self->system = mct_systems[system];
@@ -94,13 +102,15 @@ static void randomise(trial *self, test_random *random, int system, uint32_t eff
     self->input = (mct_real)random_in(random, -10, 10);
 }
 
-static double friction_of(trial *self, const char *viscous, const char *dry, double rate) {
+static double friction_of(trial *self, const char *viscous, const char *dry, double rate)
+{
     const double sliding = (self->effects & MCT_COULOMB) ? *parameter_of(&self->scene, dry) : 0;
     const double damping = (self->effects & MCT_VISCOUS) ? *parameter_of(&self->scene, viscous) : 0;
     return -damping * rate - (rate > 0 ? sliding : rate < 0 ? -sliding : 0);
 }
 
-static double current_of(trial *self, double motor_rate) {
+static double current_of(trial *self, double motor_rate)
+{
     if (self->effects & MCT_MOTOR_INDUCTIVE) {
         return (double)self->x[4];
     }
@@ -109,7 +119,8 @@ static double current_of(trial *self, double motor_rate) {
 }
 
 /* What acts, computed from parameters and state; the current's rate is returned. */
-static void apply_forces(trial *self) {
+static void apply_forces(trial *self)
+{
     const double v1 = (double)self->x[2];
     const double v2 = (double)self->x[3];
     const double gravity = (self->effects & MCT_GRAVITY) ? *parameter_of(&self->scene, "gravity") : 0;
@@ -118,9 +129,11 @@ static void apply_forces(trial *self) {
         self->force[3 * i + 1] = (mct_real)(-(double)self->mass[i] * gravity);
     }
     if (self->system == mct_systems[CART_POLE]) {
-        const double ratio = *parameter_of(&self->scene, "gear_ratio") / *parameter_of(&self->scene, "pulley_radius");
+        const double ratio =
+            *parameter_of(&self->scene, "gear_ratio") / *parameter_of(&self->scene, "pulley_radius");
         const double torque_constant = *parameter_of(&self->scene, "torque_constant");
-        const double drive = motor ? ratio * torque_constant * current_of(self, ratio * v1) : (double)self->input;
+        const double drive =
+            motor ? ratio * torque_constant * current_of(self, ratio * v1) : (double)self->input;
         self->force[0] = (mct_real)(drive + friction_of(self, "cart_friction", "cart_coulomb", v1));
         self->couple[1] = (mct_real)friction_of(self, "pole_friction", "pole_coulomb", v2);
     } else {
@@ -131,7 +144,8 @@ static void apply_forces(trial *self) {
     }
 }
 
-static void run_engine(trial *self) {
+static void run_engine(trial *self)
+{
     double whole = 0;
     for (int i = 0; i < self->system->particle_count; i++) {
         whole += (double)self->out.mass[i];
@@ -145,8 +159,10 @@ static void run_engine(trial *self) {
     }
     self->engine = (mct_gauss_system){count, N, self->mass, place, self};
     apply_forces(self);
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_kinematics(&self->engine, 0, self->x, self->x + N, &self->workspace, &self->motion));
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_dynamics(&self->engine, self->force, self->couple, &self->workspace, &self->motion));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_kinematics(&self->engine, 0, self->x, self->x + N,
+                                                       &self->workspace, &self->motion));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_dynamics(&self->engine, self->force, self->couple,
+                                                     &self->workspace, &self->motion));
     double square = 0;
     double spread = 0;
     for (int i = 0; i < count; i++) {
@@ -158,31 +174,36 @@ static void run_engine(trial *self) {
     }
     for (int i = 0; i < N; i++) {
         for (int j = 0; j < N; j++) {
-            spread += (double)self->motion.M[i][j] * (double)self->motion.acceleration[i] * (double)self->motion.acceleration[j];
+            spread += (double)self->motion.M[i][j] * (double)self->motion.acceleration[i] *
+                      (double)self->motion.acceleration[j];
         }
     }
     self->norm = sqrt(square) + sqrt(fabs(spread));
 }
 
-static const char *const quantity_names[] = {"M", "Cv", "C", "tau", "acceleration", "constraint force", "position", "energy"};
+static const char *const quantity_names[] = {
+    "M", "Cv", "C", "tau", "acceleration", "constraint force", "position", "energy"};
 enum { MASS, CV, C, TAU, ACCELERATION, CONSTRAINT, POSITION, ENERGY, QUANTITIES };
 static double worst[QUANTITIES];
 
-static void compare(int quantity, mct_real closed, mct_real engine, double size) {
+static void compare(int quantity, mct_real closed, mct_real engine, double size)
+{
     const double error = fabs((double)closed - (double)engine) / (size > 0 ? size : 1);
     worst[quantity] = fmax(worst[quantity], error);
     if (!(error <= TOLERANCE)) {
         char text[160];
-        snprintf(text, sizeof text, "%s: closed form %.17g, engine %.17g, terms of size %.3g", quantity_names[quantity],
-                 (double)closed, (double)engine, size);
+        snprintf(text, sizeof text, "%s: closed form %.17g, engine %.17g, terms of size %.3g",
+                 quantity_names[quantity], (double)closed, (double)engine, size);
         TEST_FAIL_MESSAGE(text);
     }
 }
 
-static void compare_all(const trial *self) {
+static void compare_all(const trial *self)
+{
     const mct_evaluation *const out = &self->out;
     const mct_gauss_motion *const motion = &self->motion;
-    const double det = (double)out->M[0][0] * (double)out->M[1][1] - (double)out->M[0][1] * (double)out->M[1][0];
+    const double det =
+        (double)out->M[0][0] * (double)out->M[1][1] - (double)out->M[0][1] * (double)out->M[1][0];
     double force_size[N];
     double acceleration_size[N];
     for (int j = 0; j < N; j++) {
@@ -229,13 +250,15 @@ static void compare_all(const trial *self) {
     const double v1 = fabs((double)self->x[2]);
     const double v2 = fabs((double)self->x[3]);
     compare(ENERGY, out->kinetic_energy, (mct_real)kinetic,
-            (double)out->M[0][0] * v1 * v1 + (double)out->M[1][1] * v2 * v2 + 2 * fabs((double)out->M[0][1]) * v1 * v2);
+            (double)out->M[0][0] * v1 * v1 + (double)out->M[1][1] * v2 * v2 +
+                2 * fabs((double)out->M[0][1]) * v1 * v2);
     compare(ENERGY, out->potential_energy, (mct_real)potential, potential_size);
     TEST_ASSERT_TRUE(out->M[0][1] == out->M[1][0]);
     TEST_ASSERT_TRUE(out->M[0][0] > 0 && det > 0);
 }
 
-static void for_all_trials(int system, void (*check)(const trial *)) {
+static void for_all_trials(int system, void (*check)(const trial *))
+{
     test_random random = {12345};
     memset(worst, 0, sizeof worst);
     for (int k = 0; k < TRIALS; k++) {
@@ -255,26 +278,31 @@ static void for_all_trials(int system, void (*check)(const trial *)) {
     printf("\n");
 }
 
-static void test_the_cart_poles_closed_form_is_what_gauss_principle_gives(void) {
+static void test_the_cart_poles_closed_form_is_what_gauss_principle_gives(void)
+{
     for_all_trials(CART_POLE, compare_all);
 }
 
-static void test_the_reaction_wheels_closed_form_is_what_gauss_principle_gives(void) {
+static void test_the_reaction_wheels_closed_form_is_what_gauss_principle_gives(void)
+{
     for_all_trials(REACTION_WHEEL, compare_all);
 }
 
-static void check_work_of_constraints(const trial *self) {
+static void check_work_of_constraints(const trial *self)
+{
     double power = 0;
     double size = 0;
     for (int i = 0; i < self->engine.particle_count; i++) {
         for (int k = 0; k < 3; k++) {
-            power += (double)self->out.constraint_force[self->particles[i]][k] * (double)self->motion.velocity[i][k];
+            power += (double)self->out.constraint_force[self->particles[i]][k] *
+                     (double)self->motion.velocity[i][k];
             size += sqrt((double)self->mass[i]) * fabs((double)self->motion.velocity[i][k]);
         }
     }
     double couple_size = 0;
     double amplification = 1; /* e inherits the error of the accelerations */
-    const double det = (double)self->out.M[0][0] * (double)self->out.M[1][1] - pow((double)self->out.M[0][1], 2);
+    const double det =
+        (double)self->out.M[0][0] * (double)self->out.M[1][1] - pow((double)self->out.M[0][1], 2);
     amplification += (double)self->out.M[0][0] * (double)self->out.M[1][1] / det;
     for (int j = 0; j < N; j++) {
         power -= (double)self->couple[j] * (double)self->x[N + j];
@@ -284,14 +312,16 @@ static void check_work_of_constraints(const trial *self) {
     TEST_ASSERT_TRUE(fabs(power) <= TOLERANCE * amplification * (size * self->norm + couple_size));
 }
 
-static void test_constraint_forces_do_the_work_of_the_couples_and_no_other(void) {
+static void test_constraint_forces_do_the_work_of_the_couples_and_no_other(void)
+{
     for_all_trials(CART_POLE, check_work_of_constraints);
     for_all_trials(REACTION_WHEEL, check_work_of_constraints);
 }
 
-#if HAVE_REFERENCE
-/* dE/dt of the raw Lagrangian energy along the closed form's motion, by a central difference in quadruple precision. */
-static void check_power_balance(const trial *self) {
+/* dE/dt of the raw Lagrangian energy along the closed form's motion, by a central difference in quadruple
+ * precision. */
+static void check_power_balance(const trial *self)
+{
     const reference_model model = reference_of(&self->scene);
     const mct_evaluation *const out = &self->out;
     const quad small = (quad)1e-11;
@@ -311,7 +341,8 @@ static void check_power_balance(const trial *self) {
         ahead[i] = now[i] + small * rate[i];
         behind[i] = now[i] - small * rate[i];
     }
-    const double change = (double)((reference_energy(&model, ahead) - reference_energy(&model, behind)) / (2 * small));
+    const double change =
+        (double)((reference_energy(&model, ahead) - reference_energy(&model, behind)) / (2 * small));
     const double powers[] = {(double)out->power_input, (double)out->power_viscous, (double)out->power_coulomb,
                              (double)out->power_resistance, (double)out->power_conversion};
     const double det = (double)out->M[0][0] * (double)out->M[1][1] - pow((double)out->M[0][1], 2);
@@ -328,23 +359,22 @@ static void check_power_balance(const trial *self) {
     worst[ENERGY] = fmax(worst[ENERGY], fabs(change - sum) / size);
     TEST_ASSERT_TRUE(fabs(change - sum) <= TOLERANCE * size);
     TEST_ASSERT_TRUE(out->power_viscous <= 0 && out->power_coulomb <= 0 && out->power_resistance <= 0);
-    TEST_ASSERT_TRUE((self->effects & MCT_MOTOR) != 0 || (out->power_resistance == 0 && out->power_conversion == 0));
+    TEST_ASSERT_TRUE((self->effects & MCT_MOTOR) != 0 ||
+                     (out->power_resistance == 0 && out->power_conversion == 0));
 }
-#endif
 
-static void test_the_power_balance_closes_also_for_unequal_motor_constants(void) {
-#if HAVE_REFERENCE
+static void test_the_power_balance_closes_also_for_unequal_motor_constants(void)
+{
     for_all_trials(CART_POLE, check_power_balance);
     for_all_trials(REACTION_WHEEL, check_power_balance);
-#endif
 }
 
 /*
- * The determinant of M near upright is that of the light cart alone: taken as a difference, float would be off by 6 % and
- * double by 1e-10. Tolerance: some roundings of the constants, no cancellation.
+ * The determinant of M near upright is that of the light cart alone: taken as a difference, float would be
+ * off by 6 % and double by 1e-10. Tolerance: some roundings of the constants, no cancellation.
  */
-static void test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_the_pole(void) {
-#if HAVE_REFERENCE
+static void test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_the_pole(void)
+{
     static const double angles[] = {0, 1e-5, 1e-3, 0.1, 3.1415926535};
     for (size_t n = 0; n < sizeof angles / sizeof angles[0]; n++) {
         mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, MCT_GRAVITY);
@@ -372,10 +402,10 @@ static void test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_t
             TEST_ASSERT_TRUE(fabs((double)alone[i] - exact) <= tolerance * fabs(exact));
         }
     }
-#endif
 }
 
-static void test_particles_have_no_negative_mass_by_default(void) {
+static void test_particles_have_no_negative_mass_by_default(void)
+{
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         const mct_scene scene = scene_of(system, MCT_STEPPER_RK4, MCT_GRAVITY);
         mct_constants constants;
@@ -389,8 +419,10 @@ static void test_particles_have_no_negative_mass_by_default(void) {
     }
 }
 
-/* A coordinate at rest either stays, held by less than the full friction, or starts against the full friction. */
-static void test_dry_friction_at_rest_holds_or_gives_way_against_the_motion(void) {
+/* A coordinate at rest either stays, held by less than the full friction, or starts against the full
+ * friction. */
+static void test_dry_friction_at_rest_holds_or_gives_way_against_the_motion(void)
+{
     test_random random = {99};
     int held = 0;
     for (int k = 0; k < 4000; k++) {
@@ -408,14 +440,17 @@ static void test_dry_friction_at_rest_holds_or_gives_way_against_the_motion(void
         mct_constants constants;
         TEST_ASSERT_EQUAL_INT(MCT_OK, now.system->prepare(&frictionless, 1e-3, &constants, NULL));
         now.system->evaluate(&constants, frictionless.effects, now.x, now.input, &smooth);
-        static const char *const names[2][N] = {{"cart_coulomb", "pole_coulomb"}, {"arm_coulomb", "wheel_coulomb"}};
+        static const char *const names[2][N] = {{"cart_coulomb", "pole_coulomb"},
+                                                {"arm_coulomb", "wheel_coulomb"}};
         for (int i = 0; i < N; i++) {
             const double size = *parameter_of(&now.scene, names[k % 2][i]);
             const double dry = (double)now.out.tau[i] - (double)smooth.tau[i];
             const double slack = 100 * (double)MCT_REAL_EPSILON * (fabs((double)smooth.tau[i]) + size);
             const double a = (double)now.out.acceleration[i];
-            const double force_size = fabs((double)smooth.tau[0]) + fabs((double)smooth.tau[1]) + fabs((double)smooth.Cv[0]);
-            const double det = (double)now.out.M[0][0] * (double)now.out.M[1][1] - pow((double)now.out.M[0][1], 2);
+            const double force_size =
+                fabs((double)smooth.tau[0]) + fabs((double)smooth.tau[1]) + fabs((double)smooth.Cv[0]);
+            const double det =
+                (double)now.out.M[0][0] * (double)now.out.M[1][1] - pow((double)now.out.M[0][1], 2);
             const double still = 100 * (double)MCT_REAL_EPSILON * force_size *
                                  ((double)now.out.M[0][0] + (double)now.out.M[1][1]) / det;
             TEST_ASSERT_TRUE(fabs(dry) <= size + slack);
@@ -431,13 +466,16 @@ static void test_dry_friction_at_rest_holds_or_gives_way_against_the_motion(void
     TEST_ASSERT_TRUE(held > 100);
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_the_cart_poles_closed_form_is_what_gauss_principle_gives);
     RUN_TEST(test_the_reaction_wheels_closed_form_is_what_gauss_principle_gives);
     RUN_TEST(test_constraint_forces_do_the_work_of_the_couples_and_no_other);
-    RUN_TEST(test_the_power_balance_closes_also_for_unequal_motor_constants);
-    RUN_TEST(test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_the_pole);
+    if (HAVE_REFERENCE) { /* gcc; the others check all the rest */
+        RUN_TEST(test_the_power_balance_closes_also_for_unequal_motor_constants);
+        RUN_TEST(test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_the_pole);
+    }
     RUN_TEST(test_particles_have_no_negative_mass_by_default);
     RUN_TEST(test_dry_friction_at_rest_holds_or_gives_way_against_the_motion);
     return UNITY_END();

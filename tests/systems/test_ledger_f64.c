@@ -1,9 +1,10 @@
 /*
  * The ledger of energy over a run: what the effects' powers add up to is what the energy changes by.
  *
- * Powers are summed by the trapezoidal rule within each tick, the voltage being held over it, so its left and its right limit
- * count. The sum is off by h^2/12 times the change of the power's slope, so halving the tick divides the gap by four; where a
- * tick is not short against L/R, the current's own jump is not resolved, and the motor is taken slow here.
+ * Powers are summed by the trapezoidal rule within each tick, the voltage being held over it, so its left and
+ * its right limit count. The sum is off by h^2/12 times the change of the power's slope, so halving the tick
+ * divides the gap by four; where a tick is not short against L/R, the current's own jump is not resolved, and
+ * the motor is taken slow here.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,17 +14,20 @@
 
 #define DURATION 4.0
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 typedef struct {
     double input, viscous, coulomb, resistance, conversion;
 } ledger;
 
-static double power_of(const mct_plant *plant, mct_real input, ledger *sum, double weight) {
+static double power_of(const mct_plant *plant, mct_real input, ledger *sum, double weight)
+{
     mct_evaluation now;
     plant->system->evaluate(&plant->constants, plant->effects, plant->state.x, input, &now);
     sum->input += weight * now.power_input;
@@ -35,7 +39,8 @@ static double power_of(const mct_plant *plant, mct_real input, ledger *sum, doub
 }
 
 /* Gap between energy and ledger at the end, relative to all work that was done. */
-static double gap_of(mct_scene scene, double dt, bool print) {
+static double gap_of(mct_scene scene, double dt, bool print)
+{
     scene.dt = dt;
     mct_plant plant;
     start_plant(&plant, &scene);
@@ -53,16 +58,19 @@ static double gap_of(mct_scene scene, double dt, bool print) {
     }
     const double change = power_of(&plant, 0, &none, 0) - before;
     const double total = sum.input + sum.viscous + sum.coulomb + sum.resistance + sum.conversion;
-    const double size = fabs(sum.input) + fabs(sum.viscous) + fabs(sum.coulomb) + fabs(sum.resistance) + fabs(sum.conversion) + 1e-3;
+    const double size = fabs(sum.input) + fabs(sum.viscous) + fabs(sum.coulomb) + fabs(sum.resistance) +
+                        fabs(sum.conversion) + 1e-3;
     if (print) {
-        printf("%s, %s: energy %+.4f J = input %+.4f viscous %+.4f coulomb %+.4f resistance %+.4f conversion %+.4f",
-               mct_systems[scene.system]->name, motor_name(scene.effects), change, sum.input, sum.viscous, sum.coulomb,
-               sum.resistance, sum.conversion);
+        printf("%s, %s: energy %+.4f J = input %+.4f viscous %+.4f coulomb %+.4f resistance %+.4f conversion "
+               "%+.4f",
+               mct_systems[scene.system]->name, motor_name(scene.effects), change, sum.input, sum.viscous,
+               sum.coulomb, sum.resistance, sum.conversion);
     }
     return fabs(change - total) / size;
 }
 
-static mct_scene scene_with(int system, uint32_t effects) {
+static mct_scene scene_with(int system, uint32_t effects)
+{
     mct_scene scene = scene_of(system, system == CART_POLE ? MCT_STEPPER_RK4 : MCT_STEPPER_EXPO, effects);
     scene.initial[mct_systems[system]->upright_coordinate] = 2.5;
     *parameter_of(&scene, "inductance") = 0.05 * *parameter_of(&scene, "resistance");
@@ -70,7 +78,8 @@ static mct_scene scene_with(int system, uint32_t effects) {
     return scene;
 }
 
-static void test_the_works_of_all_effects_add_up_to_the_change_of_energy(void) {
+static void test_the_works_of_all_effects_add_up_to_the_change_of_energy(void)
+{
     static const uint32_t motors[] = {0, MCT_MOTOR_QUASI_STATIC, MCT_MOTOR_INDUCTIVE};
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         for (int k = 0; k < 3; k++) {
@@ -84,12 +93,15 @@ static void test_the_works_of_all_effects_add_up_to_the_change_of_energy(void) {
     }
 }
 
-/* Friction is of first order where a coordinate stops or starts: the gap is bounded by ticks in which one does. */
-static void test_the_ledger_closes_with_dry_friction_to_first_order(void) {
+/* Friction is of first order where a coordinate stops or starts: the gap is bounded by ticks in which one
+ * does. */
+static void test_the_ledger_closes_with_dry_friction_to_first_order(void)
+{
     mct_scene cart = scene_with(CART_POLE, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB);
     *parameter_of(&cart, "cart_coulomb") = 0.5;
     *parameter_of(&cart, "pole_coulomb") = 0.01;
-    mct_scene wheel = scene_with(REACTION_WHEEL, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR_QUASI_STATIC);
+    mct_scene wheel =
+        scene_with(REACTION_WHEEL, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR_QUASI_STATIC);
     *parameter_of(&wheel, "arm_coulomb") = 0.004;
     *parameter_of(&wheel, "wheel_coulomb") = 0.0005;
     const mct_scene *const scenes[] = {&cart, &wheel};
@@ -102,7 +114,8 @@ static void test_the_ledger_closes_with_dry_friction_to_first_order(void) {
     }
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_the_works_of_all_effects_add_up_to_the_change_of_energy);
     RUN_TEST(test_the_ledger_closes_with_dry_friction_to_first_order);

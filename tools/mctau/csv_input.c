@@ -14,13 +14,13 @@
 typedef struct {
     const char *path;
     const char *column;
-    long long line;       /* being read */
-    bool has_header;      /* the first line is behind */
-    size_t field;         /* of the line, from 0 */
-    bool found;           /* the header has the column */
-    size_t wanted;        /* which field it is */
-    bool taken;           /* the line had it */
-    mct_message headers;  /* for a complaint */
+    long long line;      /* being read */
+    bool has_header;     /* the first line is behind */
+    size_t field;        /* of the line, from 0 */
+    bool found;          /* the header has the column */
+    size_t wanted;       /* which field it is */
+    bool taken;          /* the line had it */
+    mct_message headers; /* for a complaint */
     const mct_field *range;
     double *samples;
     size_t count, capacity;
@@ -138,7 +138,8 @@ static void parse(reader *self, struct csv_parser *parser, char *text, size_t le
         refuse(self, MCT_ERROR_SYNTAX, "found a quote that does not end");
     }
     if (self->status == MCT_OK && self->count == 0) {
-        refuse(self, MCT_ERROR_SYNTAX, self->has_header ? "found no row below the headers" : "found an empty file");
+        refuse(self, MCT_ERROR_SYNTAX,
+               self->has_header ? "found no row below the headers" : "found an empty file");
         mct_message_add(self->why, "; allowed a line of headers and one row a tick");
     }
 }
@@ -181,7 +182,8 @@ static const mct_field *input_range(void)
     return NULL;
 }
 
-mct_status csv_input_read(const char *path, const char *column, double **samples, size_t *count, mct_message *why)
+mct_status csv_input_read(const char *path, const char *column, double **samples, size_t *count,
+                          mct_message *why)
 {
     reader self = {.path = path, .column = column, .range = input_range(), .status = MCT_OK, .why = why};
     struct csv_parser parser;

@@ -8,11 +8,12 @@
 #include "mctau/status.h"
 
 /*
- * Reads the column whose header is `column`; the first line holds the headers. Every row must have a number there, finite and
- * within the range of an input.
- * Gives MCT_OK and *samples, which the caller frees; MCT_ERROR_IO when the file cannot be read; MCT_ERROR_RANGE or
- * MCT_ERROR_SYNTAX for what is in it, with "file:line: found ...; allowed ..." in `why`.
+ * Reads the column whose header is `column`; the first line holds the headers. Every row must have a number
+ * there, finite and within the range of an input.
+ * Gives MCT_OK and *samples, which the caller frees; MCT_ERROR_IO when the file cannot be read;
+ * MCT_ERROR_RANGE or MCT_ERROR_SYNTAX for what is in it, with "file:line: found ...; allowed ..." in `why`.
  */
-mct_status csv_input_read(const char *path, const char *column, double **samples, size_t *count, mct_message *why);
+mct_status csv_input_read(const char *path, const char *column, double **samples, size_t *count,
+                          mct_message *why);
 
 #endif

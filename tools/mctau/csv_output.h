@@ -1,6 +1,6 @@
 /*
- * A CSV file that is there in whole or not at all: written under another name in the same folder, renamed at the end. What is
- * no regular file (a pipe, a device, "-" for stdout) is written to directly.
+ * A CSV file that is there in whole or not at all: written under another name in the same folder, renamed at
+ * the end. What is no regular file (a pipe, a device, "-" for stdout) is written to directly.
  */
 #ifndef MCTAU_TOOLS_CSV_OUTPUT_H
 #define MCTAU_TOOLS_CSV_OUTPUT_H

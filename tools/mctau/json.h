@@ -1,8 +1,8 @@
 /*
  * Writes JSON, indented, one value a line; a vector of numbers is one value.
  *
- * Numbers have 17 significant digits, so a double reads back as the same double; what is not finite is null. Every call
- * takes the key of an object's member, or NULL within a list.
+ * Numbers have 17 significant digits, so a double reads back as the same double; what is not finite is null.
+ * Every call takes the key of an object's member, or NULL within a list.
  */
 #ifndef MCTAU_TOOLS_JSON_H
 #define MCTAU_TOOLS_JSON_H

@@ -16,7 +16,8 @@ static int run_verb(const arguments *given);
 
 const verb verb_list = {
     .name = "list",
-    .doc = "lists systems with parameters, units, ranges and defaults; effects, steppers, controllers, scene keys",
+    .doc = "lists systems with parameters, units, ranges and defaults; effects, steppers, controllers, scene "
+           "keys",
     .operand = "[SYSTEM]",
     .text = "Lists all that a scene may hold. With SYSTEM, that system alone, with its parameters.",
     .options = options,
@@ -272,8 +273,8 @@ static void print_json(const mct_system *only)
 
 static void print_quantity(const mct_field *field)
 {
-    printf("  %-24s %-8s %12g  %10g to %-10g %s\n", field->name, field->unit, field->standard, field->minimum, field->maximum,
-           field->doc);
+    printf("  %-24s %-8s %12g  %10g to %-10g %s\n", field->name, field->unit, field->standard, field->minimum,
+           field->maximum, field->doc);
 }
 
 static void print_heading(const char *title)
@@ -287,7 +288,8 @@ static void print_effects(const mct_system *system)
     for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
         const mct_effect *effect = &mct_effects[i];
         if (system->effects & effect->mask) {
-            printf("  %-24s default %-14s %s\n", effect->name, effect_choice(effect, system->standard_effects), effect->doc);
+            printf("  %-24s default %-14s %s\n", effect->name,
+                   effect_choice(effect, system->standard_effects), effect->doc);
         }
     }
 }
@@ -311,13 +313,15 @@ static void print_system(const mct_system *system)
     for (int i = 0; i < 2 * system->coordinate_count; i++) {
         const mct_field *field = mct_state_field(system, i);
         const mct_coordinate *coordinate = &system->coordinates[i % system->coordinate_count];
-        printf("  %-24s %-8s %12g  deviation that costs a controller as much as the full input\n", field->name, field->unit,
+        printf("  %-24s %-8s %12g  deviation that costs a controller as much as the full input\n",
+               field->name, field->unit,
                i < system->coordinate_count ? coordinate->position_weight : coordinate->rate_weight);
     }
     print_effects(system);
     printf("\nInput: a voltage [V]; with motor = \"off\" a %s [%s], %s\n", system->input_without_motor->name,
            system->input_without_motor->unit, system->input_without_motor->doc);
-    printf("Driven: %s. Upright: %s = 0. Particles:", system->coordinates[system->driven_coordinate].position.name,
+    printf("Driven: %s. Upright: %s = 0. Particles:",
+           system->coordinates[system->driven_coordinate].position.name,
            system->coordinates[system->upright_coordinate].position.name);
     for (int i = 0; i < system->particle_count; i++) {
         printf(" %s", system->particle_names[i]);
@@ -345,20 +349,23 @@ static void print_key(const mct_field *field, const mct_scene *defaults)
     switch (field->kind) {
     case MCT_FIELD_REAL:
     case MCT_FIELD_INTEGER:
-        printf("%-8s %12g  %10g to %-10g %s\n", field->unit, field->standard, field->minimum, field->maximum, field->doc);
+        printf("%-8s %12g  %10g to %-10g %s\n", field->unit, field->standard, field->minimum, field->maximum,
+               field->doc);
         return;
     case MCT_FIELD_LIST:
-        printf("%-8s %12s  %10g to %-10g %s\n", field->unit, "[]", field->minimum, field->maximum, field->doc);
+        printf("%-8s %12s  %10g to %-10g %s\n", field->unit, "[]", field->minimum, field->maximum,
+               field->doc);
         return;
     case MCT_FIELD_BOOLEAN:
-        printf("%-8s %12s  %24s %s\n", "", field->standard > 0 ? "true" : "false", "true or false", field->doc);
+        printf("%-8s %12s  %24s %s\n", "", field->standard > 0 ? "true" : "false", "true or false",
+               field->doc);
         return;
     case MCT_FIELD_TEXT:
         printf("%-8s %12s  %24s %s\n", "", default_text(defaults, field), "a text", field->doc);
         return;
     case MCT_FIELD_CHOICE:
-        printf("%-8s %12s  %24s %s:", "", field->choices != NULL ? choice_name(field, (int)field->standard) : "", "a name",
-               field->doc);
+        printf("%-8s %12s  %24s %s:", "",
+               field->choices != NULL ? choice_name(field, (int)field->standard) : "", "a name", field->doc);
         for (int i = 0; choice_name(field, i) != NULL; i++) {
             printf("%s %s", i > 0 ? "," : "", choice_name(field, i));
         }
@@ -381,7 +388,8 @@ static void print_all(void)
     for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
         printf("  %-20s %s\n", mct_effects[i].name, mct_effects[i].doc);
     }
-    printf("\nTables of a scene, beside [parameters], [effects], [initial] and [weights], whose keys are the system's\n");
+    printf("\nTables of a scene, beside [parameters], [effects], [initial] and [weights], whose keys are the "
+           "system's\n");
     for (int i = 0; i < MCT_SCENE_TABLE_COUNT; i++) {
         const mct_scene_table *table = &mct_scene_tables[i];
         printf("\n[%s]  %s\n", table->name, table->doc);

@@ -15,7 +15,8 @@ enum { VERBS = sizeof verbs / sizeof verbs[0] };
 static void print_overview(FILE *file)
 {
     fputs("usage: mctau VERB [options]\n\n"
-          "Small mechanisms in closed form, M(q) a + C(q,v) v = tau, simulated and controlled at a fixed step.\n\n"
+          "Small mechanisms in closed form, M(q) a + C(q,v) v = tau, simulated and controlled at a fixed "
+          "step.\n\n"
           "Verbs\n",
           file);
     for (int i = 0; i < VERBS; i++) {
@@ -34,7 +35,8 @@ static int finish(int exit_code)
     errno = 0;
     const bool lost = fflush(stdout) != 0 || ferror(stdout);
     if (lost && errno != EPIPE) {
-        return say(EXIT_IO, "the result could not be printed: %s", errno != 0 ? strerror(errno) : "write error");
+        return say(EXIT_IO, "the result could not be printed: %s",
+                   errno != 0 ? strerror(errno) : "write error");
     }
     return exit_code;
 }

@@ -13,7 +13,8 @@
 
 static const option options[] = {
     OPTION_SET,
-    {"input", "V", NULL, "input [V; N or N m with the motor off]; default: the scene's own at t = 0, 0 under a controller"},
+    {"input", "V", NULL,
+     "input [V; N or N m with the motor off]; default: the scene's own at t = 0, 0 under a controller"},
     {"precision", "NAME", "scene.precision", NULL},
     OPTION_JSON,
     {NULL, NULL, NULL, NULL},
@@ -25,8 +26,10 @@ const verb verb_mct = {
     .name = "mct",
     .doc = "shows M, C, tau, accelerations, constraint forces, energies and powers at a state",
     .operand = "SCENE",
-    .text = "Evaluates M(q) a + C(q,v) v = tau at the scene's initial state, which --set initial.NAME=VALUE changes.\n"
-            "The constraint force on a particle is e = m xdd - f: what the constraints add to the forces f from outside.",
+    .text = "Evaluates M(q) a + C(q,v) v = tau at the scene's initial state, which --set initial.NAME=VALUE "
+            "changes.\n"
+            "The constraint force on a particle is e = m xdd - f: what the constraints add to the forces f "
+            "from outside.",
     .options = options,
     .examples = "  mctau mct scenes/cart_pole.toml --set initial.pole_angle=0.5 --set initial.pole_rate=2\n"
                 "  mctau mct scenes/reaction_wheel.toml --input 10 --json\n",
@@ -140,8 +143,8 @@ static void print_state(const scene_file *file, const mct_result *at)
 }
 
 /* M and C, with the unit that turns a column's acceleration or velocity into the row's force. */
-static void print_matrix(const mct_result *at, const char *title, const double (*rows)[RUNNER_MAX_COORDINATES],
-                         const char *units[3])
+static void print_matrix(const mct_result *at, const char *title,
+                         const double (*rows)[RUNNER_MAX_COORDINATES], const char *units[3])
 {
     const int n = at->coordinates;
     printf("\n%s\n  %-18s", title, "");
@@ -162,8 +165,8 @@ static void print_vectors(const mct_result *at)
 {
     printf("\n  %-18s %18s %18s %18s\n", "", "C v", "tau", "acceleration a");
     for (int i = 0; i < at->coordinates; i++) {
-        printf("  %-18s %14.8g %-3s %14.8g %-3s %14.8g %s/s^2\n", at->names[i], at->Cv[i], force_unit(at, i), at->tau[i],
-               force_unit(at, i), at->acceleration[i], at->units[i]);
+        printf("  %-18s %14.8g %-3s %14.8g %-3s %14.8g %s/s^2\n", at->names[i], at->Cv[i], force_unit(at, i),
+               at->tau[i], force_unit(at, i), at->acceleration[i], at->units[i]);
     }
 }
 
@@ -175,7 +178,8 @@ static void print_particles(const mct_result *at)
         const double *e = at->constraint_force[i];
         printf("  %-18s %12.6g %14.8g %14.8g %14.8g\n", at->particle_names[i], at->mass[i], e[0], e[1], e[2]);
     }
-    printf("  Of all forces that keep the constraints, e has the least sum of |e|^2 / m: it is the residual of Gauss's\n"
+    printf("  Of all forces that keep the constraints, e has the least sum of |e|^2 / m: it is the residual "
+           "of Gauss's\n"
            "  least-squares problem, whose solution is a.\n");
 }
 
@@ -185,13 +189,13 @@ static void print_ledger(const mct_result *at)
     const struct {
         const char *name;
         double value;
-    } energy[] = {{"kinetic", e->kinetic}, {"potential", e->potential}, {"magnetic", e->magnetic}, {"total", total(e)}},
-      power[] = {{"input", e->power_input},
-                 {"viscous friction", e->power_viscous},
-                 {"dry friction", e->power_coulomb},
-                 {"resistance", e->power_resistance},
-                 {"conversion", e->power_conversion},
-                 {"total", total_power(e)}};
+    } energy[] = {{"kinetic", e->kinetic},
+                  {"potential", e->potential},
+                  {"magnetic", e->magnetic},
+                  {"total", total(e)}},
+      power[] = {{"input", e->power_input},           {"viscous friction", e->power_viscous},
+                 {"dry friction", e->power_coulomb},  {"resistance", e->power_resistance},
+                 {"conversion", e->power_conversion}, {"total", total_power(e)}};
     printf("\nEnergy [J]\n");
     for (size_t i = 0; i < sizeof energy / sizeof energy[0]; i++) {
         printf("  %-18s %14.8g\n", energy[i].name, energy[i].value);
@@ -221,7 +225,8 @@ static int read_input(const char *text, double *input)
     char *end;
     *input = strtod(text, &end);
     if (end == text || *end != '\0' || !(fabs(*input) <= LARGEST_INPUT)) {
-        return say(EXIT_USAGE, "--input: found %s; allowed a number from %g to %g", text, -LARGEST_INPUT, LARGEST_INPUT);
+        return say(EXIT_USAGE, "--input: found %s; allowed a number from %g to %g", text, -LARGEST_INPUT,
+                   LARGEST_INPUT);
     }
     return 0;
 }
@@ -236,7 +241,8 @@ static int evaluate(const scene_file *file, const arguments *given)
     if (text != NULL && read_input(text, &input) != 0) {
         return EXIT_USAGE;
     }
-    const mct_status status = file->runner->mct(&file->scene, &samples, text != NULL ? &input : NULL, &at, &why);
+    const mct_status status =
+        file->runner->mct(&file->scene, &samples, text != NULL ? &input : NULL, &at, &why);
     if (status != MCT_OK) {
         return say_status(status, &why);
     }

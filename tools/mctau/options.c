@@ -60,17 +60,19 @@ static void print_option(const option *self, FILE *file)
     if (field->kind == MCT_FIELD_REAL) {
         fprintf(file, "; default %g", field->standard);
     }
-    fprintf(file, "\n  %-24s = --set %s=%s\n", "", self->key, self->argument != NULL ? self->argument : "true");
+    fprintf(file, "\n  %-24s = --set %s=%s\n", "", self->key,
+            self->argument != NULL ? self->argument : "true");
 }
 
 void print_help(const verb *self, FILE *file)
 {
-    fprintf(file, "usage: mctau %s%s%s [options]\n\n%s\n\nOptions\n", self->name, self->operand != NULL ? " " : "",
-            self->operand != NULL ? self->operand : "", self->text);
+    fprintf(file, "usage: mctau %s%s%s [options]\n\n%s\n\nOptions\n", self->name,
+            self->operand != NULL ? " " : "", self->operand != NULL ? self->operand : "", self->text);
     for (const option *row = self->options; row->name != NULL; row++) {
         print_option(row, file);
     }
-    fprintf(file, "  %-24s this text\n\nExamples\n%s\nExit codes\n%s", "--help", self->examples, self->exit_codes);
+    fprintf(file, "  %-24s this text\n\nExamples\n%s\nExit codes\n%s", "--help", self->examples,
+            self->exit_codes);
 }
 
 /* --- parser --- */
@@ -97,7 +99,8 @@ static char *joined(const char *a, const char *b, const char *c)
 static bool add_override(arguments *self, const option *row, const char *value, int *exit_code)
 {
     if (strpbrk(value, "\r\n") != NULL) {
-        *exit_code = say(EXIT_USAGE, "--%s: found a line break within its argument; allowed one line", row->name);
+        *exit_code =
+            say(EXIT_USAGE, "--%s: found a line break within its argument; allowed one line", row->name);
         return false;
     }
     const size_t size = (size_t)(self->override_count + 1) * sizeof *self->overrides;
@@ -136,15 +139,17 @@ static bool take_operand(arguments *self, int argc, char **argv, int *exit_code)
     const verb *asked = self->verb;
     const int allowed = asked->operand != NULL ? 1 : 0;
     if (argc - optind > allowed) {
-        *exit_code = say(EXIT_USAGE, "%s: found one argument too many: %s; usage: mctau %s %s [options]", asked->name,
-                         argv[optind + allowed], asked->name, asked->operand != NULL ? asked->operand : "");
+        *exit_code =
+            say(EXIT_USAGE, "%s: found one argument too many: %s; usage: mctau %s %s [options]", asked->name,
+                argv[optind + allowed], asked->name, asked->operand != NULL ? asked->operand : "");
         return false;
     }
     if (argc > optind) {
         self->operand = argv[optind];
     } else if (allowed == 1 && asked->operand[0] != '[') {
-        *exit_code = say(EXIT_USAGE, "%s: no %s given\nusage: mctau %s %s [options]\n%smctau %s --help tells more", asked->name,
-                         asked->operand, asked->name, asked->operand, asked->examples, asked->name);
+        *exit_code =
+            say(EXIT_USAGE, "%s: no %s given\nusage: mctau %s %s [options]\n%smctau %s --help tells more",
+                asked->name, asked->operand, asked->name, asked->operand, asked->examples, asked->name);
         return false;
     }
     return true;

@@ -1,5 +1,6 @@
 /*
- * Verbs and their options. One table per verb drives the parser and --help, and is what a shell completion will need.
+ * Verbs and their options. One table per verb drives the parser and --help, and is what a shell completion
+ * will need.
  */
 #ifndef MCTAU_TOOLS_OPTIONS_H
 #define MCTAU_TOOLS_OPTIONS_H
@@ -21,16 +22,22 @@ typedef struct {
 #define ANY_KEY ""
 
 /* Options that all verbs with a scene have. */
-#define OPTION_SET {"set", "TABLE.KEY=VALUE", ANY_KEY, "any value of the scene, as often as wanted; a later one wins"}
-#define OPTION_JSON {"json", NULL, NULL, "the result as one JSON object on stdout, and nothing else there"}
+#define OPTION_SET                                                                                        \
+    {                                                                                                     \
+        "set", "TABLE.KEY=VALUE", ANY_KEY, "any value of the scene, as often as wanted; a later one wins" \
+    }
+#define OPTION_JSON                                                                           \
+    {                                                                                         \
+        "json", NULL, NULL, "the result as one JSON object on stdout, and nothing else there" \
+    }
 
 struct arguments;
 
 typedef struct {
     const char *name;
-    const char *doc;     /* one line, for the list of verbs */
-    const char *operand; /* what its one operand is called, "[...]" when it may be left out */
-    const char *text;    /* what it does and what comes out */
+    const char *doc;       /* one line, for the list of verbs */
+    const char *operand;   /* what its one operand is called, "[...]" when it may be left out */
+    const char *text;      /* what it does and what comes out */
     const option *options; /* ends with an empty row */
     const char *examples;  /* one a line */
     const char *exit_codes;
@@ -39,7 +46,7 @@ typedef struct {
 
 /* What a command line asks for. */
 typedef struct arguments {
-    const char *program;             /* as called: what hints name */
+    const char *program; /* as called: what hints name */
     const verb *verb;
     const char *operand;             /* NULL when left out */
     const char *values[MAX_OPTIONS]; /* by row of the verb's table; NULL when not given, "" for a switch */
@@ -52,7 +59,8 @@ const char *arguments_value(const arguments *self, const char *name);
 
 /*
  * Reads a command line; argv[0] is the verb's name.
- * Returns true when the verb shall run. Otherwise *exit_code says how to end: help was printed, or a complaint.
+ * Returns true when the verb shall run. Otherwise *exit_code says how to end: help was printed, or a
+ * complaint.
  */
 bool arguments_read(arguments *self, const verb *asked, int argc, char **argv, int *exit_code);
 

@@ -19,7 +19,8 @@ const verb verb_replay = {
     .name = "replay",
     .doc = "runs a log's recorded inputs again and proves the same bits, tick for tick",
     .operand = "LOG",
-    .text = "Reads an event log that mctau run --log wrote, runs what it recorded again in the same precision, and compares\n"
+    .text = "Reads an event log that mctau run --log wrote, runs what it recorded again in the same "
+            "precision, and compares\n"
             "every tick bit for bit. Names the first tick and field that differ.",
     .options = options,
     .examples = "  mctau run scenes/cart_pole.toml --log run.lcm\n"
@@ -55,8 +56,8 @@ static void print_text(const char *log, const replay_result *result)
         printf("%s: equal: %" PRIu64 " ticks, the same bits in every field\n", log, result->ticks);
     } else {
         printf("%s: different from tick %" PRIu64 " on, field %s:\n", log, result->first_tick, result->field);
-        printf("  recorded %24.17g  %a\n  replayed %24.17g  %a\n", result->recorded, result->recorded, result->replayed,
-               result->replayed);
+        printf("  recorded %24.17g  %a\n  replayed %24.17g  %a\n", result->recorded, result->recorded,
+               result->replayed, result->replayed);
     }
 }
 
@@ -89,8 +90,9 @@ static int run_verb(const arguments *given)
         return EXIT_CHECK_FAILED;
     }
     if (result.truncated) {
-        return say(EXIT_IO, "%s: the log was cut: found no end; all %" PRIu64 " ticks that it holds are equal", given->operand,
-                   result.ticks);
+        return say(EXIT_IO,
+                   "%s: the log was cut: found no end; all %" PRIu64 " ticks that it holds are equal",
+                   given->operand, result.ticks);
     }
     return EXIT_WELL;
 }

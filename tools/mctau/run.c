@@ -20,7 +20,8 @@ static const option options[] = {
     {"realtime", NULL, "scene.realtime", NULL},
     {"hal", "NAME", "scene.hal", "what stands in for the hardware; sim"},
     OPTION_SET,
-    {"csv", "FILE", NULL, "one row a tick: time, states, estimates, input wanted and applied, mode, faults; - is stdout"},
+    {"csv", "FILE", NULL,
+     "one row a tick: time, states, estimates, input wanted and applied, mode, faults; - is stdout"},
     {"log", "FILE", "telemetry.log", "event log of every tick, for replay and for LCM's tools"},
     {"lcm", "URL", "telemetry.lcm", "publishes every tick, e.g. udpm://239.255.76.67:7667?ttl=0"},
     OPTION_JSON,
@@ -33,14 +34,17 @@ const verb verb_run = {
     .name = "run",
     .doc = "simulates and controls a scene, says what happened, writes every tick if asked to",
     .operand = "SCENE",
-    .text = "Runs a scene from beginning to end and prints what happened. SCENE is a TOML file; - reads it from stdin.\n"
-            "In lockstep, the default, it runs as fast as it can; --realtime keeps the clock and shows how well.",
+    .text =
+        "Runs a scene from beginning to end and prints what happened. SCENE is a TOML file; - reads it from "
+        "stdin.\n"
+        "In lockstep, the default, it runs as fast as it can; --realtime keeps the clock and shows how well.",
     .options = options,
     .examples = "  mctau run scenes/reaction_wheel.toml\n"
                 "  mctau run scenes/cart_pole.toml --csv run.csv --set parameters.pole_mass=0.2\n"
                 "  mctau run scenes/cart_pole.toml --set variation.spread=0.1 --set variation.seed=7 --json\n"
                 "  mctau run scenes/reaction_wheel.toml --duration 10 --realtime --log run.lcm\n",
-    .exit_codes = "  0    balanced: upright within 2 degrees for at least the last second; without a controller: finished\n"
+    .exit_codes = "  0    balanced: upright within 2 degrees for at least the last second; without a "
+                  "controller: finished\n"
                   "  1    not balanced, a fault was latched, or the simulation diverged\n"
                   "  2    the command line or the scene is wrong\n"
                   "  3    a file could not be read or written, or took not all of the run\n"
@@ -81,8 +85,9 @@ static void watch_signals(void)
 static bool is_same_file(const char *a, const char *b)
 {
     struct stat there[2];
-    return a != NULL && b != NULL && stat(a, &there[0]) == 0 && stat(b, &there[1]) == 0 && S_ISREG(there[0].st_mode) &&
-           there[0].st_dev == there[1].st_dev && there[0].st_ino == there[1].st_ino;
+    return a != NULL && b != NULL && stat(a, &there[0]) == 0 && stat(b, &there[1]) == 0 &&
+           S_ISREG(there[0].st_mode) && there[0].st_dev == there[1].st_dev &&
+           there[0].st_ino == there[1].st_ino;
 }
 
 static int check_outputs(const scene_file *file, const run_options *run)
@@ -91,12 +96,15 @@ static int check_outputs(const scene_file *file, const run_options *run)
     static const char *const names[] = {"--csv", "telemetry.log"};
     for (int i = 0; i < 2; i++) {
         if (is_same_file(outputs[i], file->path) || is_same_file(outputs[i], file->samples_path)) {
-            return say(EXIT_USAGE, "%s: found %s, which the scene is read from; allowed another file", names[i], outputs[i]);
+            return say(EXIT_USAGE, "%s: found %s, which the scene is read from; allowed another file",
+                       names[i], outputs[i]);
         }
     }
     if (run->csv != NULL && (strcmp(run->csv, run->log) == 0 || is_same_file(run->csv, run->log))) {
         const bool harmless = access(run->csv, F_OK) == 0 && !is_same_file(run->csv, run->csv); /* a device */
-        return harmless ? 0 : say(EXIT_USAGE, "--csv: found %s, which is the event log, too; allowed another file", run->csv);
+        return harmless ? 0
+                        : say(EXIT_USAGE,
+                              "--csv: found %s, which is the event log, too; allowed another file", run->csv);
     }
     return 0;
 }
@@ -105,7 +113,8 @@ static int check_outputs(const scene_file *file, const run_options *run)
 
 const char *verdict_name(verdict self)
 {
-    static const char *const names[] = {"balanced", "not_balanced", "faulted", "diverged", "stopped", "finished"};
+    static const char *const names[] = {"balanced", "not_balanced", "faulted",
+                                        "diverged", "stopped",      "finished"};
     return names[self];
 }
 
@@ -132,8 +141,8 @@ static int complain_about_files(const run_result *result, const run_options *run
 {
     int exit_code = 0;
     if (result->csv_errors > 0 || result->csv_errno != 0) {
-        exit_code = say(EXIT_IO, "%s: %llu rows are lost: %s; the run went on, no incomplete file is left", run->csv,
-                        (unsigned long long)result->csv_errors, strerror(result->csv_errno));
+        exit_code = say(EXIT_IO, "%s: %llu rows are lost: %s; the run went on, no incomplete file is left",
+                        run->csv, (unsigned long long)result->csv_errors, strerror(result->csv_errno));
     }
     if (result->log_errors > 0 || result->log_errno != 0) {
         exit_code = say(EXIT_IO, "%s: the log holds %llu of %llu ticks: %s; the run went on", run->log,
@@ -176,7 +185,8 @@ static int run_scene(const scene_file *file, const arguments *given)
     const bool csv_on_stdout = asked.csv != NULL && strcmp(asked.csv, "-") == 0;
     const bool as_json = arguments_value(given, "json") != NULL;
     if (csv_on_stdout && as_json) {
-        return say(EXIT_USAGE, "--csv: found - (stdout) together with --json, which is there already; allowed a file");
+        return say(EXIT_USAGE,
+                   "--csv: found - (stdout) together with --json, which is there already; allowed a file");
     }
     if (asked.csv != NULL && asked.csv[0] == '\0') {
         return say(EXIT_USAGE, "--csv: found an empty name; allowed a file, or - for stdout");

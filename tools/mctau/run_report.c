@@ -156,9 +156,12 @@ static void print_verdict(const run_report *report, FILE *file)
         break;
     case NOT_BALANCED:
         if (result->upright_at >= 0) {
-            fprintf(file, "Not balanced yet: upright since %.3f s, which is less than a second ago.\n", result->upright_at);
+            fprintf(file, "Not balanced yet: upright since %.3f s, which is less than a second ago.\n",
+                    result->upright_at);
         } else {
-            fprintf(file, "Not balanced: %.1f deg from upright at the end, %.1f deg at the nearest; the controller was in mode %s.\n",
+            fprintf(file,
+                    "Not balanced: %.1f deg from upright at the end, %.1f deg at the nearest; the controller "
+                    "was in mode %s.\n",
                     result->deviation * DEGREES, result->least_deviation * DEGREES, result->mode);
         }
         break;
@@ -166,7 +169,9 @@ static void print_verdict(const run_report *report, FILE *file)
         fprintf(file, "Faulted at %.3f s: zero volts from there on.\n", result->fault_at);
         break;
     case DIVERGED:
-        fprintf(file, "Diverged: on %" PRIu64 " ticks the simulation left all bounds; the last sane state was kept.\n",
+        fprintf(file,
+                "Diverged: on %" PRIu64
+                " ticks the simulation left all bounds; the last sane state was kept.\n",
                 result->diverged_ticks);
         break;
     case STOPPED:
@@ -201,7 +206,8 @@ static void print_state(const run_report *report, FILE *file)
 static void print_energy(const run_result *result, FILE *file)
 {
     const energies *end = &result->energy;
-    fprintf(file, "\nEnergy [J]\n  %-16s %14s %14s %14s %14s\n", "", "kinetic", "potential", "magnetic", "total");
+    fprintf(file, "\nEnergy [J]\n  %-16s %14s %14s %14s %14s\n", "", "kinetic", "potential", "magnetic",
+            "total");
     const energies *const rows[] = {&result->energy_start, end};
     static const char *const names[] = {"at the start", "at the end"};
     for (int i = 0; i < 2; i++) {
@@ -224,8 +230,8 @@ static void print_faults(const run_report *report, FILE *file)
     bool any = false;
     for (int i = 0; i < MCT_FAULT_COUNT; i++) {
         if (was_seen(result, i)) {
-            fprintf(file, "%s  %s, seen on %" PRIu64 " ticks: %s\n", any ? "" : "\nFaults\n", mct_fault_name((mct_fault)i),
-                    result->faults[i], mct_fault_text((mct_fault)i));
+            fprintf(file, "%s  %s, seen on %" PRIu64 " ticks: %s\n", any ? "" : "\nFaults\n",
+                    mct_fault_name((mct_fault)i), result->faults[i], mct_fault_text((mct_fault)i));
             any = true;
         }
     }
@@ -235,8 +241,10 @@ static void print_faults(const run_report *report, FILE *file)
     char limited[64];
     snprintf(limited, sizeof limited, "the voltage was at its limit of %g V", result->limit);
     print_share(file, limited, result->saturated_ticks, result->ticks);
-    print_share(file, "the voltage was reduced because feedback was late", result->derated_ticks, result->ticks);
-    print_share(file, "the plant refused an input that was not finite", result->rejected_inputs, result->ticks);
+    print_share(file, "the voltage was reduced because feedback was late", result->derated_ticks,
+                result->ticks);
+    print_share(file, "the plant refused an input that was not finite", result->rejected_inputs,
+                result->ticks);
 }
 
 static void print_timing(const run_result *result, FILE *file)
@@ -246,17 +254,21 @@ static void print_timing(const run_result *result, FILE *file)
     for (int i = 0; i < 32; i++) {
         most = result->lateness[i] > most ? result->lateness[i] : most;
     }
-    fprintf(file, "\nClock: latest wake-up %" PRIu32 " us late, longest tick %" PRIu32 " us of work, %" PRIu64 " ticks missed\n",
+    fprintf(file,
+            "\nClock: latest wake-up %" PRIu32 " us late, longest tick %" PRIu32 " us of work, %" PRIu64
+            " ticks missed\n",
             result->worst_late_us, result->worst_work_us, result->missed_ticks);
     if (!result->has_priority || !result->has_memory) {
         fprintf(file, "  without%s%s%s: run as root, or raise the limits rtprio and memlock\n",
                 result->has_priority ? "" : " real-time priority",
-                !result->has_priority && !result->has_memory ? " and" : "", result->has_memory ? "" : " locked memory");
+                !result->has_priority && !result->has_memory ? " and" : "",
+                result->has_memory ? "" : " locked memory");
     }
     for (int i = 0; i < 32; i++) {
         if (result->lateness[i] > 0) {
             fprintf(file, "  below %9.0f us %8" PRIu64 "  %.*s\n", ldexp(1, i), result->lateness[i],
-                    (int)(1 + (WIDTH - 1) * result->lateness[i] / most), "##################################################");
+                    (int)(1 + (WIDTH - 1) * result->lateness[i] / most),
+                    "##################################################");
         }
     }
 }
@@ -266,8 +278,8 @@ static void print_speed(const run_report *report, FILE *file)
     const run_result *result = &report->result;
     const double loop_s = 1e-9 * result->ns_per_tick * (double)result->ticks;
     if (loop_s > 0) {
-        fprintf(file, "\nSpeed: %.0f ns per tick, %.0f times as fast as the mechanism itself\n", result->ns_per_tick,
-                time_of(report) / loop_s);
+        fprintf(file, "\nSpeed: %.0f ns per tick, %.0f times as fast as the mechanism itself\n",
+                result->ns_per_tick, time_of(report) / loop_s);
     }
 }
 
@@ -287,14 +299,17 @@ static void print_files(const run_report *report, FILE *file)
     }
     if (has_log) {
         fprintf(file, "  %s: %" PRIu64 " records", options->log, result->logged);
-        fprintf(file, result->log_errors > 0 ? ", %" PRIu64 " events did not fit\n" : "\n", result->log_errors);
+        fprintf(file, result->log_errors > 0 ? ", %" PRIu64 " events did not fit\n" : "\n",
+                result->log_errors);
     }
     if (has_lcm) {
-        fprintf(file, "  %s: %" PRIu64 " records published, %" PRIu64 " errors\n", options->lcm, result->published,
-                result->publish_errors);
+        fprintf(file, "  %s: %" PRIu64 " records published, %" PRIu64 " errors\n", options->lcm,
+                result->published, result->publish_errors);
     }
     if (result->dropped > 0) {
-        fprintf(file, "  %" PRIu64 " records were dropped because telemetry could not keep up; no tick waited for it\n",
+        fprintf(file,
+                "  %" PRIu64
+                " records were dropped because telemetry could not keep up; no tick waited for it\n",
                 result->dropped);
     }
 }
@@ -308,31 +323,40 @@ static void print_next(const run_report *report, FILE *file)
     const char *mctau = report->scene->given->program;
     fputs("\nNext\n", file);
     if (report->verdict == DIVERGED) {
-        fprintf(file, "  a smaller step (--dt, --set scene.substeps=10) or another --stepper; %s list tells which suit\n", mctau);
+        fprintf(file,
+                "  a smaller step (--dt, --set scene.substeps=10) or another --stepper; %s list tells which "
+                "suit\n",
+                mctau);
     } else if (report->verdict == NOT_BALANCED && result->upright_at >= 0) {
         fprintf(file, "  a longer --duration\n");
     } else if (report->verdict == NOT_BALANCED) {
-        fprintf(file, "  a longer --duration, if it still swings up; more voltage or torque (supply_voltage, torque_constant)\n"
-                      "  if it never got near; gentler weights ([weights], controller.input_weight) if it fell\n");
+        fprintf(file,
+                "  a longer --duration, if it still swings up; more voltage or torque (supply_voltage, "
+                "torque_constant)\n"
+                "  if it never got near; gentler weights ([weights], controller.input_weight) if it fell\n");
     } else if (report->verdict == FAULTED) {
-        fprintf(file, "  the rows around %.3f s in --csv show what the sensors said and what the motor was given\n",
+        fprintf(file,
+                "  the rows around %.3f s in --csv show what the sensors said and what the motor was given\n",
                 result->fault_at);
     }
     if (options->log[0] != '\0' && result->log_errors == 0) {
-        fprintf(file, "  %s replay %s   runs it again from its log and proves the same bits\n", mctau, options->log);
+        fprintf(file, "  %s replay %s   runs it again from its log and proves the same bits\n", mctau,
+                options->log);
     }
     if (options->csv == NULL) {
         fprintf(file, "  %s run %s --csv run.csv   writes every tick, for a plot\n", mctau, path);
     }
-    fprintf(file, "  %s mct %s   shows M, C, tau and the constraint forces at the initial state\n", mctau, path);
+    fprintf(file, "  %s mct %s   shows M, C, tau and the constraint forces at the initial state\n", mctau,
+            path);
 }
 
 void print_run(const run_report *report, FILE *file)
 {
     const mct_scene *scene = &report->scene->scene;
     fprintf(file, "%s: %s, stepper %s, precision %s, tick %g s, %" PRIu64 " ticks\n\n",
-            strcmp(report->scene->path, "-") == 0 ? "standard input" : report->scene->path, mct_systems[scene->system]->name,
-            mct_steppers[scene->stepper].name, report->scene->runner->precision, scene->dt, report->result.ticks);
+            strcmp(report->scene->path, "-") == 0 ? "standard input" : report->scene->path,
+            mct_systems[scene->system]->name, mct_steppers[scene->stepper].name,
+            report->scene->runner->precision, scene->dt, report->result.ticks);
     print_verdict(report, file);
     print_state(report, file);
     print_energy(&report->result, file);

@@ -23,7 +23,8 @@ energies runner_energies(const mct_evaluation *at)
 }
 
 /* Input at t = 0, within the plant's bounds. */
-static mct_real input_of(const mct_scene *scene, const run_options *options, const double *given, mct_real bound)
+static mct_real input_of(const mct_scene *scene, const run_options *options, const double *given,
+                         mct_real bound)
 {
     mct_input open_loop;
     mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});

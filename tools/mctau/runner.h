@@ -1,8 +1,9 @@
 /*
  * What the command asks of the core, once for each precision.
  *
- * runner*.c is compiled for float and for double against the core of that precision; the table below is the only symbol that
- * either shows to the front end. Everything here is free of mct_real: values are doubles, exact in both.
+ * runner*.c is compiled for float and for double against the core of that precision; the table below is the
+ * only symbol that either shows to the front end. Everything here is free of mct_real: values are doubles,
+ * exact in both.
  */
 #ifndef MCTAU_TOOLS_RUNNER_H
 #define MCTAU_TOOLS_RUNNER_H
@@ -14,18 +15,18 @@
 #include "mctau/scene.h"
 #include "mctau/status.h"
 
-#define RUNNER_MAX_STATES 16
+#define RUNNER_MAX_STATES      16
 #define RUNNER_MAX_COORDINATES 8
-#define RUNNER_MAX_PARTICLES 32
-#define RUNNER_MAX_FAULTS 16
+#define RUNNER_MAX_PARTICLES   32
+#define RUNNER_MAX_FAULTS      16
 
 /* Where the results of a run go; NULL or "" for nowhere. */
 typedef struct {
-    const char *csv;         /* path, "-" for stdout */
+    const char *csv; /* path, "-" for stdout */
     const char *log;
     const char *lcm;
-    const char *scene_text;  /* as read, with its overrides, for the log */
-    const double *samples;   /* of a csv input, one a tick */
+    const char *scene_text; /* as read, with its overrides, for the log */
+    const double *samples;  /* of a csv input, one a tick */
     size_t sample_count;
     const volatile int *stop; /* set by a signal: the run ends at zero volts */
     bool progress;            /* show progress on stderr */
@@ -46,20 +47,20 @@ typedef struct {
     energies energy_start, energy;      /* at the beginning and at the end */
     uint64_t faults[RUNNER_MAX_FAULTS]; /* ticks on which each fault was seen, by mct_fault */
     uint32_t latched;
-    double fault_at;             /* [s] first tick on which one was latched; negative when none was */
-    uint64_t saturated_ticks;    /* input at its limit, whether the controller or the supervisor put it there */
+    double fault_at;          /* [s] first tick on which one was latched; negative when none was */
+    uint64_t saturated_ticks; /* input at its limit, whether the controller or the supervisor put it there */
     uint64_t limited_ticks, derated_ticks, rejected_inputs, diverged_ticks;
-    double limit;                /* largest input let through [V]; infinite when nothing bounds it */
+    double limit; /* largest input let through [V]; infinite when nothing bounds it */
     bool controlled;
-    const char *mode;            /* of the controller at the end */
-    double deviation;            /* from upright at the end [rad] */
-    double least_deviation;      /* of the whole run [rad] */
-    double upright_at;           /* [s] from then on within 2 degrees of upright to the end; negative when not */
-    double worst_after_upright;  /* largest deviation since then [rad]; 0 when not upright */
-    double worst_last_second;    /* largest deviation of the last second [rad] */
-    double ns_per_tick;          /* wall-clock time of the loop, per tick; without init, CSV and waiting for telemetry */
-    double seconds;              /* the same in all [s] */
-    bool stopped;                /* by run_options.stop */
+    const char *mode;       /* of the controller at the end */
+    double deviation;       /* from upright at the end [rad] */
+    double least_deviation; /* of the whole run [rad] */
+    double upright_at;      /* [s] from then on within 2 degrees of upright to the end; negative when not */
+    double worst_after_upright; /* largest deviation since then [rad]; 0 when not upright */
+    double worst_last_second;   /* largest deviation of the last second [rad] */
+    double ns_per_tick;         /* wall-clock time of the loop, without init, CSV and waiting for telemetry */
+    double seconds;             /* the same in all [s] */
+    bool stopped;               /* by run_options.stop */
     /* real time */
     uint64_t missed_ticks;
     uint32_t worst_late_us, worst_work_us;
@@ -94,7 +95,7 @@ typedef struct {
 
 /* First difference between a log and its replay. */
 typedef struct {
-    uint64_t ticks;      /* replayed */
+    uint64_t ticks; /* replayed */
     bool equal;
     bool truncated;      /* the log ends in the middle of an event: replayed up to the last complete one */
     uint64_t first_tick; /* that differs */
@@ -105,10 +106,14 @@ typedef struct {
 typedef struct {
     const char *precision;
     size_t real_size;
-    mct_status (*run)(const mct_scene *scene, const run_options *options, run_result *result, mct_message *why);
-    /* At the scene's initial state; `input` NULL stands for the scene's own at t = 0. It is bounded as in a run. */
-    mct_status (*mct)(const mct_scene *scene, const run_options *options, const double *input, mct_result *result,
+    mct_status (*run)(const mct_scene *scene, const run_options *options, run_result *result,
                       mct_message *why);
+    /*
+     * At the scene's initial state; `input` NULL stands for the scene's own at t = 0. It is bounded as in a
+     * run.
+     */
+    mct_status (*mct)(const mct_scene *scene, const run_options *options, const double *input,
+                      mct_result *result, mct_message *why);
     mct_status (*replay)(const char *log, replay_result *result, mct_message *why);
 } mct_runner;
 

@@ -1,6 +1,7 @@
 /*
- * A run: HAL, loop, and who is told. The clock is read between blocks of ticks only, and rows of a CSV file are written there:
- * a tick costs here what it costs anywhere. In real time one block holds the whole run, so that no tick waits for a disk.
+ * A run: HAL, loop, and who is told. The clock is read between blocks of ticks only, and rows of a CSV file
+ * are written there: a tick costs here what it costs anywhere. In real time one block holds the whole run, so
+ * that no tick waits for a disk.
  */
 #include "runner_run.h"
 
@@ -23,11 +24,11 @@
 #include "hal/lcm/telemetry.h"
 #endif
 
-#define PI MCT_R(3.14159265358979323846)
+#define PI      MCT_R(3.14159265358979323846)
 #define UPRIGHT MCT_R(0.034906585039886591538) /* 2 degrees */
 
-enum { BLOCK = 1024 };                                     /* ticks between looks at the clock */
-static const uint64_t largest_buffer = UINT64_C(1) << 30;  /* bytes of rows that a real-time run may keep */
+enum { BLOCK = 1024 };                                    /* ticks between looks at the clock */
+static const uint64_t largest_buffer = UINT64_C(1) << 30; /* bytes of rows that a real-time run may keep */
 static const uint64_t never = UINT64_MAX;
 
 typedef struct {
@@ -39,13 +40,13 @@ typedef struct {
     const mct_state *plant; /* NULL where nobody knows it */
     uint64_t ticks;         /* of the whole run */
     /* what the ticks have shown */
-    int upright;            /* index of the angle that is 0 upright */
+    int upright; /* index of the angle that is 0 upright */
     mct_real deviation, least_deviation, worst_deviation, worst_last_second;
-    uint64_t last_second;   /* tick at which it begins */
-    uint64_t last_outside;  /* tick at whose end the angle was beyond UPRIGHT, `never` for none */
-    mct_real limit;         /* of the input */
+    uint64_t last_second;  /* tick at which it begins */
+    uint64_t last_outside; /* tick at whose end the angle was beyond UPRIGHT, `never` for none */
+    mct_real limit;        /* of the input */
     uint64_t saturated_ticks;
-    uint64_t first_fault;   /* tick on which a fault was latched, `never` for none */
+    uint64_t first_fault; /* tick on which a fault was latched, `never` for none */
     /* time */
     int64_t started_ns, loop_ns, waiting_ns;
     bool telemetry_is_stuck;
@@ -84,7 +85,8 @@ static void sleep_ns(long ns)
 
 static mct_real deviation_of(const run *self)
 {
-    const mct_real angle = self->plant != NULL ? self->plant->x[self->upright] : self->loop.record.estimate[self->upright];
+    const mct_real angle =
+        self->plant != NULL ? self->plant->x[self->upright] : self->loop.record.estimate[self->upright];
     const mct_real folded = angle > PI ? angle - 2 * PI : angle < -PI ? angle + 2 * PI : angle;
     return folded < 0 ? -folded : folded;
 }
@@ -199,7 +201,8 @@ static mct_status open_csv(run *self, mct_message *why)
         return MCT_ERROR_BOUND;
     }
     self->rows = need_memory(calloc(self->row_capacity, sizeof *self->rows));
-    memset(self->rows, 1, self->row_capacity * sizeof *self->rows); /* so that no tick meets a page that is not there */
+    memset(self->rows, 1,
+           self->row_capacity * sizeof *self->rows); /* so that no tick meets a page that is not there */
     const mct_status status = csv_output_open(&self->csv, self->options->csv, why);
     self->has_csv = status == MCT_OK;
     if (self->has_csv) {
@@ -263,7 +266,10 @@ static void stop_telemetry(run *self, run_result *result)
     self->has_telemetry = false;
 }
 
-/* In lockstep nobody is in a hurry: the run waits for telemetry instead of losing records, but not for one that is stuck. */
+/*
+ * In lockstep nobody is in a hurry: the run waits for telemetry instead of losing records, but not for one
+ * that is stuck.
+ */
 static void wait_for_telemetry(run *self)
 {
     enum { PAUSE_NS = 100000, PAUSES = 20000 }; /* 2 s */
@@ -390,12 +396,14 @@ static void run_ticks(run *self)
 static void fill_state(const run *self, run_result *result)
 {
     const mct_system *system = self->reader.system;
-    result->states = self->plant != NULL ? mct_state_count(system, self->reader.effects) : 2 * system->coordinate_count;
+    result->states =
+        self->plant != NULL ? mct_state_count(system, self->reader.effects) : 2 * system->coordinate_count;
     for (int i = 0; i < result->states; i++) {
         const mct_field *field = mct_state_field(system, i);
         result->names[i] = field->name;
         result->units[i] = field->unit;
-        result->state[i] = self->plant != NULL ? mct_plant_value(&self->sim.plant, i) : (double)self->loop.record.estimate[i];
+        result->state[i] = self->plant != NULL ? mct_plant_value(&self->sim.plant, i)
+                                               : (double)self->loop.record.estimate[i];
     }
 }
 
@@ -480,7 +488,8 @@ static void discard_log(const run *self)
     }
 }
 
-mct_status runner_run(const mct_scene *scene, const run_options *options, run_result *result, mct_message *why)
+mct_status runner_run(const mct_scene *scene, const run_options *options, run_result *result,
+                      mct_message *why)
 {
     run *self = need_memory(calloc(1, sizeof *self));
     memset(result, 0, sizeof *result);

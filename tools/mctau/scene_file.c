@@ -71,14 +71,15 @@ static int read_text(const char *path, char **text, size_t *length)
         return 0;
     }
     if (reason == EFBIG) {
-        return say(EXIT_USAGE, "%s: found more than %d bytes; a scene has less", shown_path(path), LARGEST_SCENE);
+        return say(EXIT_USAGE, "%s: found more than %d bytes; a scene has less", shown_path(path),
+                   LARGEST_SCENE);
     }
     return say(EXIT_IO, "%s: the scene cannot be read: %s", shown_path(path), strerror(reason));
 }
 
 /*
- * The text that a log keeps. A line of the file that looks like an override (the file came out of a log) is made an
- * ordinary comment, since the run that is logged does not heed it.
+ * The text that a log keeps. A line of the file that looks like an override (the file came out of a log) is
+ * made an ordinary comment, since the run that is logged does not heed it.
  */
 static char *logged_text(const char *text, size_t length, const arguments *given)
 {
@@ -133,8 +134,9 @@ static int choose_runner(scene_file *self)
 {
     self->runner = find_runner(self->scene.precision);
     if (self->runner == NULL) {
-        return say(EXIT_USAGE, "%s: scene.precision: found %s, which this build has not; allowed %s", shown_path(self->path),
-                   self->scene.precision == MCT_PRECISION_FLOAT ? "float" : "double", runner_names());
+        return say(EXIT_USAGE, "%s: scene.precision: found %s, which this build has not; allowed %s",
+                   shown_path(self->path), self->scene.precision == MCT_PRECISION_FLOAT ? "float" : "double",
+                   runner_names());
     }
     return 0;
 }

@@ -11,15 +11,17 @@
 typedef struct {
     const arguments *given; /* the command line */
     const char *path;       /* as given; "-" is stdin */
-    char *text;       /* the file's text, and a line "#!set table.key=value" for each override: what a log keeps */
-    double *samples;  /* of a csv input, one a tick; NULL without */
+    char *text; /* the file's text, and a line "#!set table.key=value" for each override: what a log keeps */
+    double *samples; /* of a csv input, one a tick; NULL without */
     size_t sample_count;
     char *samples_path; /* where they came from */
     mct_scene scene;
     const mct_runner *runner; /* of the scene's precision */
 } scene_file;
 
-/* Reads what the operand names, with the overrides. Gives 0, or says what is wrong and gives the exit code. */
+/*
+ * Reads what the operand names, with the overrides. Gives 0, or says what is wrong and gives the exit code.
+ */
 int scene_file_read(scene_file *self, const arguments *given);
 
 void scene_file_free(scene_file *self);

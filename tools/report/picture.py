@@ -5,13 +5,13 @@ tools/report/picture.py --csv run.csv --json run.json --scene scenes/cart_pole.t
 """
 
 import argparse
+import math
 import pathlib
 import sys
 
 import mechanism
 import run_data
-from plot import angle_ticks, decimated, number, ticks
-from report import ROOT
+from run_data import ROOT, decimated
 
 COLUMNS = 500
 STYLE = """
@@ -36,6 +36,21 @@ svg { font: 13px "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif
   .bob { fill: #74b6f2; } .limit, .stop { stroke: #ff7b72; } .trail { stroke: #f0a04b; }
   .swing_up { fill: #2e2818; } .balance { fill: #18291c; }
 }"""
+
+
+def ticks(low, high, wanted):
+    """Round numbers from low to high, some `wanted` of them."""
+    raw = (high - low) / wanted
+    power = 10 ** math.floor(math.log10(raw))
+    step = next(power * m for m in (1, 2, 2.5, 5, 10) if power * m >= raw * 0.999)
+    first = math.ceil(low / step - 1e-9)
+    last = math.floor(high / step + 1e-9)
+    return [i * step for i in range(first, last + 1)]
+
+
+def number(value):
+    text = f"{value:.10g}"
+    return "0" if text == "-0" else text.replace("-", "\u2212")
 
 
 def panel(run, title, times, values, box, low, high, marks, limits=(), wraps=None, shows_time=False):
@@ -103,7 +118,7 @@ def picture(run):
             (400, 36, 480, 145),
             -190,
             190,
-            {"end": last, "y": angle_ticks(-180, 180)[::2]},
+            {"end": last, "y": range(-180, 181, 90)},
             wraps=180,
         )
     )

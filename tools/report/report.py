@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Makes one HTML page of a run: what happened, the mechanism drawn, plots, the scene, how to run it again.
 
-The page stands alone: no script, no download. Python's own library is all that it needs.
+The page stands alone: no script, no download. It needs matplotlib, which tools/setup installs into build/venv.
 """
 
 import argparse
 import html
+import math
 import os
 import pathlib
 import shlex
@@ -13,10 +14,15 @@ import sys
 
 import mechanism
 import run_data
-from plot import Plot
+from run_data import ROOT
+
+try:
+    from plot import Plot
+except ModuleNotFoundError as missing:
+    print(f"report: {missing}; tools/setup installs it into build/venv", file=sys.stderr)
+    sys.exit(run_data.INPUT_OUTPUT)
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
 VERDICTS = {
     "balanced": ("Balanced", "good"),
     "not_balanced": ("Not balanced", "bad"),
@@ -133,32 +139,28 @@ def pictures(run):
 
 def plots(run):
     """All panels, in the order in which they are read."""
-    time, table, end = run.time, run.table, run.duration
+    time, table = run.time, run.table
     upright = run.result["upright_at"] if run.controlled else None
     made = []
 
     def panel(title, unit, **options):
-        plot = Plot(title, unit, options.pop("begin", 0.0), end, **options)
-        plot.modes(run.modes)
-        plot.faults(run.faults)
-        made.append(plot)
-        return plot
+        made.append(Plot(title, unit, run, **options))
+        return made[-1]
 
-    def estimated(plot, name, wraps=None):
-        if f"{name}_estimate" in table:
-            plot.line(time, table[f"{name}_estimate"], "estimate", "estimated", wraps)
-        plot.line(time, table[name], "true", "true", wraps)
+    def estimated(plot, name):
+        if run.controlled:
+            plot.line(time, table[f"{name}_estimate"], "estimate", "estimated")
+        plot.line(time, table[name], "true", "true" if run.controlled else "")
 
-    angle = panel(words(run.angle_name), "deg from upright", low=-190, high=190, is_angle=True)
-    angle.band(-run_data.UPRIGHT, run_data.UPRIGHT, "upright", f"within {run_data.UPRIGHT:g} deg")
+    angle = panel(words(run.angle_name), "deg from upright", ylim=(-200, 200), yticks=range(-180, 181, 90))
     angle.line(time, run.degrees, "true", "", wraps=180)
-    if upright is not None and end - upright > 0.5:
+    if upright is not None and run.duration - upright > 0.5:
         limit = 1.25 * run_data.UPRIGHT
-        near = panel(f"{words(run.angle_name)}, once upright", "deg", begin=upright, low=-limit, high=limit)
-        near.band(-run_data.UPRIGHT, run_data.UPRIGHT, "upright", "")
-        estimate = [run_data.folded(v * 180 / 3.141592653589793) for v in table[f"{run.angle_name}_estimate"]]
-        near.line(time, estimate, "estimate", "estimated")
-        near.line(time, run.degrees, "true", "true")
+        near = panel(f"{words(run.angle_name)}, near upright", "deg", ylim=(-limit, limit))
+        near.band(-run_data.UPRIGHT, run_data.UPRIGHT, "upright", f"within {run_data.UPRIGHT:g} deg")
+        estimate = [run_data.folded(math.degrees(angle)) for angle in table[f"{run.angle_name}_estimate"]]
+        near.line(time, estimate, "estimate", "estimated", wraps=180)
+        near.line(time, run.degrees, "true", "true", wraps=180)
     if any(table["applied"]):
         name, unit = (
             ("voltage", "V")
@@ -171,8 +173,7 @@ def plots(run):
         input_.line(time, table["applied"], "true", "applied")
         if run.scene.has_motor and run.scene("effects", "saturation") in (True, "true"):
             supply = float(run.scene("parameters", "supply_voltage"))
-            input_.level(supply, "limit", "supply")
-            input_.level(-supply, "limit", "supply")
+            input_.levels((-supply, supply), "limit", "supply")
     for coordinate in run.system["coordinates"]:
         name, rate = coordinate["name"], coordinate["rate"]["name"]
         if not coordinate["is_angle"]:
@@ -180,21 +181,20 @@ def plots(run):
             estimated(position, name)
             if run.controlled:
                 track = float(run.scene("controller", "track_half_length"))
-                position.level(track, "limit", "end of the track")
-                position.level(-track, "limit", "end of the track")
+                position.levels((-track, track), "limit", "end of the track")
         estimated(panel(words(rate), coordinate["rate"]["unit"]), rate)
     if "current" in table:
         panel("current", "A").line(time, table["current"], "true", "")
     energy = panel("energy of the model" if run.is_varied else "energy", "J")
     energy.line(time, run.energy, "true", "kinetic + potential")
-    energy.level(run.upright_energy, "target", "at rest upright")
+    energy.levels((run.upright_energy,), "target", "at rest upright")
     return made
 
 
 def mode_key(run):
     names = dict.fromkeys(span.mode for span in run.modes if span.mode != "open_loop")
     return "".join(
-        f'<span class="key"><i class="swatch mode {name}"></i>{words(name)}</span> ' for name in names
+        f'<span class="key"><i class="swatch {name}"></i>{words(name)}</span> ' for name in names
     )
 
 
@@ -203,7 +203,7 @@ def command_lines(run):
     scene = shlex.quote(run.scene.path)
     return (
         f"mctau run {scene}{sets} --csv run.csv --json > run.json\n"
-        f"tools/report/report.py --csv run.csv --json run.json --scene {scene}{sets} -o report.html"
+        f"build/venv/bin/python tools/report/report.py --csv run.csv --json run.json --scene {scene}{sets} -o report.html"
     )
 
 
@@ -243,8 +243,7 @@ def page(run):
         "</dd></div>"
         for what, value, unit in figures(run)
     )
-    drawn = plots(run)
-    panels = "".join(plot.html() for plot in drawn)
+    panels = "".join(plot.html() for plot in plots(run))
     sets = "".join(f"\n# from the command line: {override}" for override in run.scene.overrides)
     version = run.command.text("--version")
     varied = (
@@ -262,7 +261,7 @@ def page(run):
 <dl class="figures">{tiles}</dl>
 {fault_table(run)}
 {pictures(run)}
-<h2>Over time</h2><p class="note">Seconds to the right. {mode_key(run)}</p>{varied}{panels}
+<h2>Over time</h2><p class="note">{mode_key(run)}</p>{varied}{panels}
 {final_state(run)}
 <h2>Scene</h2><pre>{html.escape(run.scene.text.rstrip() + sets)}</pre>
 <h2>How to run it again</h2><pre>{html.escape(command_lines(run))}</pre>

@@ -8,6 +8,7 @@ import subprocess
 import tomllib
 
 USAGE, INPUT_OUTPUT = 2, 3  # exit codes, as those of mctau
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 UPRIGHT = 2.0  # [deg] as in the command's verdict
 
 
@@ -254,3 +255,23 @@ def first_faults(times, faults):
 def folded(degrees):
     """Within -180 to 180."""
     return (degrees + 180) % 360 - 180
+
+
+def decimated(times, values, begin, end, columns):
+    """Points of a line: the smallest and the largest value of each column. What is left out lies between them."""
+    if len(times) <= 2 * columns:
+        return list(zip(times, values))
+    points = []
+    scale = columns / (end - begin)
+    i = 0
+    while i < len(times):
+        column = int((times[i] - begin) * scale)
+        low = high = i
+        j = i
+        while j < len(times) and int((times[j] - begin) * scale) == column:
+            low = j if values[j] < values[low] else low
+            high = j if values[j] > values[high] else high
+            j += 1
+        points += [(times[k], values[k]) for k in sorted({low, high})]
+        i = j
+    return points
