@@ -17,7 +17,7 @@
  *
  * Conventions: SI units; axes 1 right, 2 up, 3 to the viewer; v is the rate of q. Source: sections 1, 2 and
  * 2.6. Differences from it: the sign of e is that of (5) and (12), not of (35); (66), (69), (70), (175) as
- * corrected in docs/errata.md; couples (motor torques between bodies, joint friction) have no particle force
+ * corrected here; couples (motor torques between bodies, joint friction) have no particle force
  * in the source and are given here the smallest one, see mct_gauss_dynamics().
  */
 #ifndef MCTAU_GAUSS_H

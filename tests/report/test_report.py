@@ -111,6 +111,26 @@ def test_a_page_stands_alone(reported, scene, overrides):
     assert all(override in made.text for override in overrides), "the page does not say how to run it again"
 
 
+def test_the_plots_are_the_same_bytes_again_in_the_colours_of_the_page(reported):
+    runs = [reported("reaction_wheel.toml", "scene.duration=2") for _ in range(2)]
+    plots = [re.findall(r'<figure class="plot">.*?</figure>', made.text, re.DOTALL) for made in runs]
+    assert plots[0] == plots[1] and len(plots[0]) >= 5
+    text = "".join(plots[0])
+    assert not re.search(r"#[0-9a-f]{6}\b", text), "a colour that does not follow light and dark"
+    assert set(re.findall(r"var\(--(\w+)\)", text)) <= set(re.findall(r"--(\w+):", runs[0].text))
+    names = re.findall(r' id="([^"]*)"', text)
+    assert len(names) == len(set(names)), "two things of one name"
+    assert "voltage [V]" in runs[0].page.texts, "text has become curves"
+
+
+def test_without_matplotlib_a_sentence_says_where_it_is(source):
+    # -S: without the packages of the environment
+    report = [sys.executable, "-S", source / "tools/report/report.py"]
+    done = subprocess.run(report, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 3 and "matplotlib" in done.stderr and "tools/setup" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
 def test_a_fault_is_named_where_it_happened(reported):
     made = reported("cart_pole.toml", "sensors.fault=nan", "sensors.fault_time=8")
     text = " ".join(made.page.texts)

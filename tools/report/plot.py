@@ -1,7 +1,7 @@
 """Panels over time, drawn by matplotlib.
 
-matplotlib draws in stand-ins for the colours of page.css, and in the SVG they become its variables: one drawing
-serves light and dark. Each panel is drawn wide and narrow; page.css shows the one that can be read.
+matplotlib draws in stand-ins for the colours of page.css, and in the SVG they become its variables: one
+drawing serves light and dark. Each panel is drawn wide and narrow; page.css shows the one that can be read.
 """
 
 import html
@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 
 from run_data import decimated
 
-LAYOUTS = {"wide": (720, 118), "narrow": (310, 118)}  # [px] width of the drawing, height of its axes
+WIDTHS = {"wide": 720, "narrow": 310}  # [px] of the drawing
+HEIGHT = 118  # [px] of the axes
 LEFT, RIGHT, BOTTOM, LINE = 44, 16, 20, 18  # [px] margins, and a line of text
 COLUMNS = 1.2  # of decimation, a pixel
 
@@ -27,7 +28,8 @@ LINES = {
     "wanted": {"color": COLOURS["soft"], "linewidth": 0.8},
 }
 LEFT_OUT = re.compile(  # prolog, metadata, a style for the whole page, ids that nothing refers to, the font
-    r'^.*?(?=<svg)|<metadata>.*?</metadata>|<style.*?</style>| id="[\w.]+_\d+"|font-family: [^;]*; ', re.DOTALL
+    r'^.*?(?=<svg)|<metadata>.*?</metadata>|<style.*?</style>| id="[\w.]+_\d+"|font-family: [^;]*; ',
+    re.DOTALL,
 )
 
 logging.getLogger("matplotlib").setLevel(logging.ERROR)  # not a word about its caches
@@ -51,8 +53,10 @@ matplotlib.rcParams.update(
         "grid.color": COLOURS["hair"],
         "xtick.bottom": False,
         "xtick.major.size": 0,
+        "xtick.major.pad": 5,
         "ytick.left": False,
         "ytick.major.size": 0,
+        "ytick.major.pad": 6,
         "xtick.labelcolor": COLOURS["soft"],
         "ytick.labelcolor": COLOURS["soft"],
         "legend.frameon": False,
@@ -71,7 +75,7 @@ class Plot:
     def __init__(self, title, unit, run, **options):
         self.title = f"{title} [{unit}]"
         self.axes = {}
-        for layout, (width, _) in LAYOUTS.items():
+        for layout, width in WIDTHS.items():
             axes = self.axes[layout] = Figure().add_axes((0, 0, 1, 1))
             axes.locator_params(steps=(1, 2, 5, 10))
             axes.locator_params(axis="x", nbins=width // 70)
@@ -100,7 +104,7 @@ class Plot:
         """A curve; `wraps`: a jump of more than this is no motion, and not drawn."""
         for layout, axes in self.axes.items():
             points = []
-            columns = round(COLUMNS * LAYOUTS[layout][0])
+            columns = round(COLUMNS * WIDTHS[layout])
             for time, value in decimated(times, values, times[0], times[-1] + 1e-9, columns):
                 if wraps is not None and points and abs(value - points[-1][1]) > wraps:
                     points.append((time, float("nan")))
@@ -114,9 +118,8 @@ class Plot:
             near = 0.5 * (high - low) or max(abs(high), 1e-9)
             seen = [value for value in values if low - near <= value <= high + near]
             if seen:
-                axes.hlines(
-                    seen, *axes.get_xlim(), COLOURS[kind], linewidth=1, linestyle=(0, (5, 3.5)), label=label
-                )
+                style = {"color": COLOURS[kind], "linewidth": 1, "linestyle": (0, (5, 3.5)), "zorder": 1}
+                axes.hlines(seen, *axes.get_xlim(), label=label, **style)
 
     def band(self, low, high, kind, label):
         for axes in self.axes.values():
@@ -126,7 +129,7 @@ class Plot:
         return f'<figure class="plot">{"".join(map(self._svg, self.axes))}</figure>'
 
     def _svg(self, layout):
-        axes, (width, height) = self.axes[layout], LAYOUTS[layout]
+        axes, width = self.axes[layout], WIDTHS[layout]
         low, high = axes.get_ylim()
         if low < 0 < high:
             axes.axhline(0, color=COLOURS["soft"], linewidth=0.6, zorder=0.6)
@@ -140,11 +143,11 @@ class Plot:
                 axes.legend(loc="lower left", bbox_to_anchor=(edge, 1), ncols=keys)
                 top += LINE
         axes.set_title(self.title, x=edge, pad=top - LINE + 6)
-        full = top + height + BOTTOM
+        full = top + HEIGHT + BOTTOM
         axes.figure.set_size_inches(width / 72, full / 72)
-        axes.set_position((LEFT / width, BOTTOM / full, inner / width, height / full))
+        axes.set_position((LEFT / width, BOTTOM / full, inner / width, HEIGHT / full))
         file = io.StringIO()
-        with matplotlib.rc_context({"svg.hashsalt": self.title + layout}):  # ids of its own, the same each time
+        with matplotlib.rc_context({"svg.hashsalt": self.title + layout}):  # own ids, each time the same
             axes.figure.savefig(file, format="svg", metadata={"Date": None})
         svg = LEFT_OUT.sub("", file.getvalue())
         for name, colour in COLOURS.items():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes one HTML page of a run: what happened, the mechanism drawn, plots, the scene, how to run it again.
 
-The page stands alone: no script, no download. It needs matplotlib, which tools/setup installs into build/venv.
+The page stands alone: no script, no download. To make it takes matplotlib: tools/setup, build/venv.
 """
 
 import argparse
@@ -203,7 +203,8 @@ def command_lines(run):
     scene = shlex.quote(run.scene.path)
     return (
         f"mctau run {scene}{sets} --csv run.csv --json > run.json\n"
-        f"build/venv/bin/python tools/report/report.py --csv run.csv --json run.json --scene {scene}{sets} -o report.html"
+        "build/venv/bin/python tools/report/report.py --csv run.csv --json run.json "
+        f"--scene {scene}{sets} -o report.html"
     )
 
 

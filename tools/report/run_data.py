@@ -258,7 +258,7 @@ def folded(degrees):
 
 
 def decimated(times, values, begin, end, columns):
-    """Points of a line: the smallest and the largest value of each column. What is left out lies between them."""
+    """Points of a line, the smallest and the largest of a column: what is left out lies between them."""
     if len(times) <= 2 * columns:
         return list(zip(times, values))
     points = []
