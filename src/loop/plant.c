@@ -84,16 +84,16 @@ void mct_plant_step(mct_plant *plant, mct_real input)
     } else {
         plant->rejected_inputs++;
     }
-    mct_state next = plant->state;
-    plant->kernel(&plant->constants, &next, plant->input, plant->substeps);
-    if (is_sane(&next)) {
-        plant->state = next;
+    const mct_state before = plant->state; /* in place: a copy of what a kernel has just written waits for its stores */
+    plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
+    if (is_sane(&plant->state)) {
         for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
             if (plant->system->coordinates[i].is_angle) {
                 take_turns(&plant->state, i);
             }
         }
     } else {
+        plant->state = before;
         plant->diverged_ticks++;
     }
     plant->tick++;

@@ -130,11 +130,23 @@ MCT_INLINE bool is_cart_damped(unsigned effects)
     return (effects & (MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC)) != 0;
 }
 
+/* Whether anything acts on the pole. A compiler may not drop a product with 0: what is off is left out by hand. */
+MCT_INLINE bool is_pole_loaded(unsigned effects)
+{
+    return (effects & (MCT_GRAVITY | MCT_VISCOUS)) != 0;
+}
+
 /* a = M^-1 (f1, f2), where f is tau - C v. */
-MCT_INLINE void solve(const constants_t *k, mct_real s, mct_real c, mct_real f1, mct_real f2, mct_real *a)
+MCT_INLINE void solve(const constants_t *k, unsigned effects, mct_real s, mct_real c, mct_real f1, mct_real f2,
+                      mct_real *a)
 {
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     const mct_real c_over_l = c * k->inverse_length;
+    if (!is_pole_loaded(effects)) {
+        a[0] = inverse * f1;
+        a[1] = -inverse * (c_over_l * f1);
+        return;
+    }
     a[0] = inverse * (f1 - c_over_l * f2);
     a[1] = inverse * (k->mass_per_inertia * f2 - c_over_l * f1);
 }
@@ -161,27 +173,36 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     }
     dx[0] = pd;
     dx[1] = thd;
-    solve(k, s, c, f1, f2, dx + 2);
+    solve(k, effects, s, c, f1, f2, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_rate(&k->motor, u, pd, current);
     }
 }
 
 /*
- * Velocity increments of an impulse over the step, with the matrix M + extra, where extra = [e11 e12; 0 e22]
+ * Velocity increments of an impulse over the step, with the matrix M + extra, where extra = [e11 -bilinear; 0 e22]
  * holds what is taken implicitly. The determinant is that of M plus what extra adds, so that a light cart
  * does not lose it.
  */
-MCT_INLINE void impulse(const constants_t *k, mct_real s, mct_real c, mct_real e11, mct_real e12,
-                        mct_real e22, mct_real p1, mct_real p2, mct_real *dv)
+MCT_INLINE void impulse(const constants_t *k, unsigned effects, mct_real s, mct_real c, mct_real e11,
+                        mct_real bilinear, mct_real e22, mct_real p1, mct_real p2, mct_real *dv)
 {
+    const bool cart_damped = (effects & (MCT_VISCOUS | MCT_MOTOR)) != 0;
     const mct_real m12 = k->moment * c;
-    const mct_real a11 = k->total_mass + e11;
-    const mct_real a12 = m12 + e12;
-    const mct_real a22 = k->inertia + e22;
+    const mct_real a11 = cart_damped ? k->total_mass + e11 : k->total_mass;
+    const mct_real a12 = m12 - bilinear;
+    const mct_real a22 = (effects & MCT_VISCOUS) ? k->inertia + e22 : k->inertia;
     const mct_real det_M = k->inertia * (k->cart_mass + k->pole_mass * s * s);
-    const mct_real det = det_M + (e11 * a22 + k->total_mass * e22 - e12 * m12);
+    const mct_real drift = bilinear * m12;
+    const mct_real det = (effects & MCT_VISCOUS) ? det_M + (e11 * a22 + k->total_mass * e22 + drift)
+                         : cart_damped           ? det_M + (e11 * a22 + drift)
+                                                 : det_M + drift;
     const mct_real inverse = 1 / det;
+    if (!is_pole_loaded(effects)) {
+        dv[0] = inverse * (a22 * p1);
+        dv[1] = -inverse * (m12 * p1);
+        return;
+    }
     dv[0] = inverse * (a22 * p1 - a12 * p2);
     dv[1] = inverse * (a11 * p2 - m12 * p1);
 }
@@ -216,7 +237,7 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
         f2 -= k->pole_viscous * thd;
         e22 = h * k->pole_viscous;
     }
-    impulse(k, s, c, e11, 0, e22, h * f1, h * f2, dx + 2);
+    impulse(k, effects, s, c, e11, 0, e22, h * f1, h * f2, dx + 2);
 }
 
 /* Kick of `leap`: bilinear in old and new velocity, damping at their mean, current averaged exactly. */
@@ -251,7 +272,7 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
         f2 -= k->pole_viscous * thd;
         e22 = half * k->pole_viscous;
     }
-    impulse(k, s, c, e11, -h * centrifugal, e22, h * f1, h * f2, dx + 2);
+    impulse(k, effects, s, c, e11, h * centrifugal, e22, h * f1, h * f2, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_change(&k->motor, u, pd, x[4], dx[2]);
     }
@@ -301,7 +322,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real smooth[2] = {drive + cart_viscous - out->Cv[0], k->weight_moment * s + pole_viscous};
     mct_real dry[2];
     mct_friction_force(inverse_mass(k, s, c), k->coulomb, x + 2, smooth, dry);
-    solve(k, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
+    solve(k, MCT_KERNEL_EFFECTS, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
     out->tau[0] = drive + cart_viscous + dry[0];
     out->tau[1] = k->weight_moment * s + pole_viscous + dry[1];
 
@@ -334,7 +355,7 @@ static void accelerate(const void *constants, uint32_t effects, const mct_real *
     const mct_real thd = x[3];
     mct_real s, c;
     mct_sincos(x[1], &s, &c);
-    solve(k, s, c, force - k->cart_viscous * x[2] + k->moment * s * thd * thd,
+    solve(k, MCT_KERNEL_EFFECTS, s, c, force - k->cart_viscous * x[2] + k->moment * s * thd * thd,
           k->weight_moment * s - k->pole_viscous * thd, a);
 }
 

@@ -113,6 +113,24 @@ static void test_a_ramp_has_no_lag_at_any_rate(void)
     }
 }
 
+/* The rate answers a step of the count as a double pole p does, n p^(n-1) times the first answer: no overshoot. */
+static void test_a_step_of_the_count_is_answered_by_a_double_pole(void)
+{
+    static bench self;
+    const mct_scene scene = forceless(0, 32);
+    const double p = pole();
+    const double first = (1 - p) * (1 - p) * 500 * UNIT / H;
+    start(&self, &scene, 0);
+    feed(&self, 0, 0);
+    feed(&self, 0, 0);
+    for (int n = 1; n < 200; n++) {
+        feed(&self, 500 * UNIT, 0);
+        const double expected = first * n * pow(p, n - 1);
+        TEST_ASSERT_DOUBLE_WITHIN(first * 1000 * (double)MCT_REAL_EPSILON, expected,
+                                  (double)self.observer.x[3]);
+    }
+}
+
 static void test_a_sine_is_followed_within_the_lag_of_its_acceleration(void)
 {
     static const double frequencies[] = {2, 9, 30};
@@ -276,6 +294,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_ramp_has_no_lag_at_any_rate);
+    RUN_TEST(test_a_step_of_the_count_is_answered_by_a_double_pole);
     RUN_TEST(test_a_sine_is_followed_within_the_lag_of_its_acceleration);
     RUN_TEST(test_a_right_model_leaves_no_lag);
     RUN_TEST(test_a_counters_width_and_its_wrap_change_no_bit_of_an_estimate);

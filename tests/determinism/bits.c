@@ -195,7 +195,8 @@ static void print_evaluations(int system, const char *motor, uint32_t motor_effe
         mct_plant_evaluate(&plant, &at);
         hash = with_evaluation(hash, &at);
     }
-    printf("%s evaluate %s %s %016llx\n", precision, mct_systems[system]->name, motor, (unsigned long long)hash);
+    printf("%s evaluate %s %s %016llx\n", precision, mct_systems[system]->name, motor,
+           (unsigned long long)hash);
 }
 
 static void run_loop(const mct_scene *scene, const char *name, const char *variant)

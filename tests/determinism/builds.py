@@ -38,7 +38,7 @@ class Builds:
         self._write_if_changed(self.folder / "build.ninja", "\n".join(self._rules()) + "\n")
 
     def build(self):
-        """Builds as much as can be built; gives the compiler's output, which matters where a program is missing."""
+        """Builds as much as can be built; gives the output, which matters where a program is missing."""
         done = subprocess.run(["ninja", "-C", self.folder, "-k", "0", "-j", str(min(2, os.cpu_count() or 1))],
                               capture_output=True, text=True)
         return done.stdout + done.stderr
@@ -59,7 +59,7 @@ class Builds:
         return printed
 
     def _sources(self):
-        files = sorted((self.source / "src").rglob("*.c")) + sorted((self.source / "hal" / "sim").rglob("*.c"))
+        files = [file for room in ("src", "hal/sim") for file in sorted((self.source / room).rglob("*.c"))]
         return files + [self.source / "hal" / "clock.c", self.source / "tests" / "determinism" / "bits.c"]
 
     def _write_config(self):
@@ -77,21 +77,22 @@ class Builds:
         yield "  deps = gcc"
         yield "rule link"
         yield "  command = $compiler $in -o $out"
+        includes = " ".join(f"-I{self.source / place}" for place in ("include", "src", "."))
         for configuration in self.wanted:
             compiler, options = configuration
             # Another version of the compiler must not be taken for the one that made an object.
-            version = subprocess.run([compiler, "-dumpfullversion", "-dumpversion"], capture_output=True, text=True,
-                                     check=True).stdout.strip()
+            version = subprocess.run([compiler, "-dumpfullversion", "-dumpversion"], capture_output=True,
+                                     text=True, check=True).stdout.strip()
+            always = f"{ALWAYS} {options} -DCOMPILER={version} {includes}"
             for precision in PRECISIONS:
                 folder = f"{name_of(configuration)}/{precision}"
-                includes = " ".join(f"-I{self.source / place}" for place in ("include", "src", "."))
                 objects = []
                 for file in self._sources():
                     place = file.relative_to(self.source).with_suffix(".o")
                     objects.append(f"{folder}/{place}")
                     yield f"build {objects[-1]}: compile {file}"
                     yield f"  compiler = {compiler}"
-                    yield f"  options = {ALWAYS} {options} -DCOMPILER={version} {includes} -Iinclude/{precision}"
+                    yield f"  options = {always} -Iinclude/{precision}"
                 yield f"build {folder}/bits: link {' '.join(objects)}"
                 yield f"  compiler = {compiler}"
 

@@ -1,4 +1,4 @@
-"""The same run gives the same bits with every compiler and every optimisation, and those are the committed ones."""
+"""The same run gives the same bits with every compiler and optimisation, and those are the committed ones."""
 
 import os
 

@@ -28,7 +28,7 @@ def test_every_generated_part_has_been_filled(source):
 
 
 def test_every_fault_is_explained(source):
-    names = re.findall(r"\[MCT_FAULT_\w+\] = \{\"(\w+)\"", (source / "src/control/supervisor.c").read_text())
+    names = re.findall(r"\[MCT_FAULT_\w+\] =\s*\{\"(\w+)\"", (source / "src/control/supervisor.c").read_text())
     text = (source / "docs/control.md").read_text()
     assert len(names) > 5
     assert re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE) == names

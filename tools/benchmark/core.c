@@ -1,8 +1,9 @@
 /*
  * The core's own figures, in the precision of the library that this is linked with:
  *   kernel SYSTEM STEPPER   one step of a kernel
- *   plant SYSTEM STEPPER    the same with what a tick adds: bounds of the input, checks of the state, whole turns
- *   tick SYSTEM MODE        a whole tick in lockstep: sensors, estimator, controller, supervisor, plant, record to a ring
+ *   plant SYSTEM STEPPER    the same with what a tick adds: bounds of the input, checks of the state, turns
+ *   tick SYSTEM MODE        a whole tick in lockstep: sensors, estimator, controller, supervisor, plant,
+ *                           record to a ring that is emptied
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,7 +84,7 @@ static void measure_steps(const measure_effort *effort, int system, int stepper)
 
 typedef struct {
     mct_sim sim, sim_start;
-    mct_loop loop, loop_start; /* loop refers to loop and sim of this struct: copies come back to where they were */
+    mct_loop loop, loop_start; /* refers to itself and sim: copies come back to their place */
     mct_ring ring;
     mct_mode mode;
 } ticking;
@@ -124,8 +125,9 @@ static void measure_ticks(const measure_effort *effort, int system, mct_mode mod
     mct_message_clear(&why);
     mct_scene_defaults(&scene, system);
     scene.controller = MCT_CONTROLLER_SWING_UP_BALANCE;
+    const mct_samples none = {NULL, 0};
     if (mct_sim_init(&self.sim, &scene, &why) != MCT_OK ||
-        mct_loop_init(&self.loop, &scene, mct_sim_hal(&self.sim), &self.ring, (mct_samples){NULL, 0}, &why) != MCT_OK) {
+        mct_loop_init(&self.loop, &scene, mct_sim_hal(&self.sim), &self.ring, none, &why) != MCT_OK) {
         fail(mct_systems[system]->name, why.text);
     }
     self.loop.hal.ops->open(self.loop.hal.context);

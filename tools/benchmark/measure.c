@@ -38,8 +38,8 @@ static double time_of(measure_work work, void (*prepare)(void *context), void *c
     return now_ns() - begin;
 }
 
-void measure(const measure_effort *effort, const char *name, measure_work work, void (*prepare)(void *context),
-             void *context, long most)
+void measure(const measure_effort *effort, const char *name, measure_work work,
+             void (*prepare)(void *context), void *context, long most)
 {
     long count = most > 0 ? most : 64;
     double spent = time_of(work, prepare, context, count);

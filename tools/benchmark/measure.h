@@ -15,9 +15,10 @@ measure_effort measure_effort_of(int argc, char **argv);
 
 /*
  * Warms up, then prints "ns", the name, and the nanoseconds per unit of each sample.
- * prepare: called before each sample, untimed; may be NULL. most: largest count of a sample; 0: as many as fit its length.
+ * prepare: called before each sample, untimed; may be NULL.
+ * most: count of a sample; 0: as many as its length takes.
  */
-void measure(const measure_effort *effort, const char *name, measure_work work, void (*prepare)(void *context),
-             void *context, long most);
+void measure(const measure_effort *effort, const char *name, measure_work work,
+             void (*prepare)(void *context), void *context, long most);
 
 #endif

@@ -30,12 +30,15 @@ class Sample:
 
     def summary(self):
         quartiles = statistics.quantiles(self.times, n=4)
-        return {"median": statistics.median(self.times), "quartile_1": quartiles[0], "quartile_3": quartiles[2],
-                "least": min(self.times), "samples": len(self.times)}
+        return {"median": statistics.median(self.times), "quartile_1": quartiles[0],
+                "quartile_3": quartiles[2], "least": min(self.times), "samples": len(self.times)}
 
 
 def run_all(folder, effort, rounds):
-    """Times by (program, name), and what else was printed; programs take turns, so that a slow minute hits all."""
+    """Times by (program, name), what else was printed, and which programs are missing.
+
+    Programs take turns, so that a slow minute hits all.
+    """
     samples, said = {}, {}
     there = {name: folder / "tools" / "benchmark" / file for name, file in PROGRAMS.items()}
     there = {name: file for name, file in there.items() if file.exists()}
@@ -56,16 +59,20 @@ def run_all(folder, effort, rounds):
                 samples.setdefault(key, Sample()).times += [float(words[i]) for i in numbers]
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr)
-    return {key: sample.summary() for key, sample in samples.items()}, said, sorted(set(PROGRAMS) - set(there))
+    missing = sorted(set(PROGRAMS) - set(there))
+    return {key: sample.summary() for key, sample in samples.items()}, said, missing
 
 
 def machine(folder):
-    cpu = next((line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-                if line.startswith("model name")), platform.processor()) if os.path.exists("/proc/cpuinfo") else ""
+    cpuinfo = pathlib.Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
+    cpu = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")),
+               platform.processor())
     cache = (folder / "CMakeCache.txt").read_text().splitlines()
-    setting = dict(line.split("=", 1) for line in cache if "=" in line and not line.startswith(("#", "//")))
+    setting = dict(line.split("=", 1) for line in cache
+                   if "=" in line and not line.startswith(("#", "//")))
     compiler = next((value for key, value in setting.items() if key.startswith("CMAKE_C_COMPILER:")), "cc")
-    version = subprocess.run([compiler, "--version"], capture_output=True, text=True).stdout.splitlines()[0]
+    version = subprocess.run([compiler, "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     flags = " ".join(value for key, value in setting.items()
                      if key.startswith(("CMAKE_C_FLAGS:", "CMAKE_C_FLAGS_RELEASE:")) and value)
     return {"cpu": cpu, "cores": os.cpu_count(), "system": f"{platform.system()} {platform.machine()}",
@@ -81,9 +88,9 @@ def cell(results, program, name):
 
 
 def print_table(results, said, missing, about, core):
-    print(f"On {about['cpu']}, core {core} of {about['cores']} (load before: {about['load']:.1f}), {about['compiler']},"
-          f" {about['flags']}")
-    print("Nanoseconds: median +- half the distance of the quartiles. Steps of 1 ms simulated time, one after another.\n")
+    print(f"On {about['cpu']}, core {core} of {about['cores']} (load before: {about['load']:.1f}),"
+          f" {about['compiler']}, {about['flags']}")
+    print("Nanoseconds: median +- half the distance of the quartiles. Steps one after another, of 1 ms.\n")
 
     names = [name for program, name in results if program == "double"] or \
             [name for program, name in results if program == "float"]
@@ -100,7 +107,8 @@ def print_table(results, said, missing, about, core):
                   f"{cell(results, 'float', name):>20}   {text}".rstrip())
         print()
 
-    rows("A step of a kernel alone", "kernel ", lambda name: GOAL_STEP if name == "kernel cart_pole rk4" else None)
+    rows("A step of a kernel alone", "kernel ",
+         lambda name: GOAL_STEP if name == "kernel cart_pole rk4" else None)
     rows("A plant step: bounds and checks as well", "plant ",
          lambda name: GOAL_STEP if name == "plant cart_pole rk4" else None)
     rows("A whole tick in lockstep, ring included", "tick ", lambda name: GOAL_TICK)
@@ -109,18 +117,19 @@ def print_table(results, said, missing, about, core):
         print(f"missing: {PEERS.get(program, program + ' precision, not built')}")
     if ("mujoco", "peer RK4") not in results:
         return
-    print(f"MuJoCo {said['version']} beside the plant step, the same cart-pole under a held force, double [ns]")
+    print(f"MuJoCo {said['version']} beside the plant step, same cart-pole under a held force, double [ns]")
     for integrator, ours in COUNTERPARTS.items():
         theirs = results["mujoco", f"peer {integrator}"]
-        ratios = ", ".join(f"{theirs['median'] / results['mujoco', f'forced {each}']['median']:.0f} x {each}"
-                           f" ({results['mujoco', f'forced {each}']['median']:.1f})" for each in ours)
+        medians = {each: results["mujoco", f"forced {each}"]["median"] for each in ours}
+        ratios = ", ".join(f"{theirs['median'] / median:.0f} x {each} ({median:.1f})"
+                           for each, median in medians.items())
         print(f"  mj_step {integrator:<32}{cell(results, 'mujoco', f'peer {integrator}'):>20}   = {ratios}")
     print(f"  greatest difference of the two motions, RK4 on both, 10 s: {said['difference']}"
           f" (must be below {SAME_MOTION:g})\n")
-    print("How to read it: MuJoCo runs any tree of bodies, with contacts, from a model read at run time; its cost is its\n"
-          "generality. Here contacts, constraints, actuators, sensors and energy are off in it. Ours is one closed form,\n"
-          "compiled. The point mass has 1e-14 kg m^2 in MuJoCo, which wants an inertia. Both run in this same run, on the\n"
-          "same core; compare ratios between machines, not nanoseconds.")
+    print("How to read it: MuJoCo runs any tree of bodies, with contacts, from a model read at run time;\n"
+          "its cost is its generality. Here contacts, constraints, actuators, sensors and energy are off in\n"
+          "it. Ours is one closed form, compiled. The point mass has 1e-14 kg m^2 in MuJoCo, which wants an\n"
+          "inertia. Both run in this same run, on the same core. Compare ratios between machines, not times.")
 
 
 def main():
@@ -136,7 +145,8 @@ def main():
         allowed = sorted(os.sched_getaffinity(0))
         core = allowed[-1] if given.core is None else given.core
         if core not in allowed:
-            print(f"tools/bench: --core: found {core}; allowed {', '.join(map(str, allowed))}", file=sys.stderr)
+            print(f"tools/bench: --core: found {core}; allowed {', '.join(map(str, allowed))}",
+                  file=sys.stderr)
             return 2
         os.sched_setaffinity(0, {core})
     effort, rounds = (["--samples", "5", "--sample-us", "500"], 3) if given.quick else \

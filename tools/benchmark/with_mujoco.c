@@ -1,6 +1,6 @@
 /*
- * MuJoCo's mj_step beside this library's plant, on the same cart-pole: the default parameters, gravity, viscous friction, a
- * force on the cart held over each step of 1 ms, from 2 rad at rest. Double precision on both sides.
+ * MuJoCo's mj_step beside this library's plant, on the same cart-pole: the default parameters, gravity,
+ * viscous friction, a force on the cart held over each step of 1 ms, from 2 rad at rest. Both in double.
  *   peer INTEGRATOR    one mj_step, with everything off that this scene does not need
  *   forced STEPPER     one step of ours
  * and the greatest difference of the two motions over 10 s with the classical Runge-Kutta method on both.
@@ -113,14 +113,16 @@ static void build_theirs(theirs *self, const mct_scene *scene)
     char xml[2048];
     char error[512] = "";
     snprintf(xml, sizeof xml,
-             "<mujoco><compiler angle='radian' autolimits='false'/><option timestep='%.17g' gravity='0 0 %.17g'/>"
+             "<mujoco><compiler angle='radian' autolimits='false'/>"
+             "<option timestep='%.17g' gravity='0 0 %.17g'/>"
              "<worldbody><body><joint type='slide' axis='1 0 0' damping='%.17g'/>"
              "<inertial pos='0 0 0' mass='%.17g' diaginertia='%g %g %g'/>"
              "<body><joint type='hinge' axis='0 1 0' damping='%.17g'/>"
-             "<inertial pos='0 0 %.17g' mass='%.17g' diaginertia='%g %g %g'/></body></body></worldbody></mujoco>",
-             scene->dt, -parameter(scene, "gravity"), parameter(scene, "cart_friction"), parameter(scene, "cart_mass"),
-             INERTIA, INERTIA, INERTIA, parameter(scene, "pole_friction"), parameter(scene, "pole_length"),
-             parameter(scene, "pole_mass"), INERTIA, INERTIA, INERTIA);
+             "<inertial pos='0 0 %.17g' mass='%.17g' diaginertia='%g %g %g'/>"
+             "</body></body></worldbody></mujoco>",
+             scene->dt, -parameter(scene, "gravity"), parameter(scene, "cart_friction"),
+             parameter(scene, "cart_mass"), INERTIA, INERTIA, INERTIA, parameter(scene, "pole_friction"),
+             parameter(scene, "pole_length"), parameter(scene, "pole_mass"), INERTIA, INERTIA, INERTIA);
     mjSpec *spec = mj_parseXMLString(xml, NULL, error, sizeof error);
     if (spec == NULL || (self->model = mj_compile(spec, NULL)) == NULL) {
         fail(spec == NULL ? error : mjs_getError(spec));
@@ -155,7 +157,8 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int integrator;
-    } integrators[] = {{"peer Euler", mjINT_EULER}, {"peer implicitfast", mjINT_IMPLICITFAST}, {"peer RK4", mjINT_RK4}};
+    } integrators[] = {
+        {"peer Euler", mjINT_EULER}, {"peer implicitfast", mjINT_IMPLICITFAST}, {"peer RK4", mjINT_RK4}};
     const measure_effort effort = measure_effort_of(argc, argv);
     mct_scene scene;
     ours mine;
