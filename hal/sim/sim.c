@@ -25,7 +25,7 @@ mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why)
     sim->seed = (uint32_t)scene->sensor_seed;
     sim->counter_shift = (uint32_t)(32 - scene->counter_bits);
     sim->latency = (uint32_t)scene->latency;
-    sim->tick_us = (uint32_t)(scene->dt * 1e6 + 0.5);
+    sim->tick_us = scene->dt < 1e-6 ? 1 : (uint32_t)(scene->dt * 1e6 + 0.5); /* never ageless */
     sim->fault = scene->sensor_fault;
     sim->fault_begin = (uint64_t)(scene->sensor_fault_time / scene->dt + 0.5);
     sim->fault_end = (uint64_t)((scene->sensor_fault_time + scene->sensor_fault_duration) / scene->dt + 0.5);

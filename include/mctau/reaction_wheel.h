@@ -14,19 +14,19 @@
 
 typedef struct {
     mct_step step;
-    mct_real arm_inertia;        /**< m_w l^2 + I_a: about the pivot, the wheel as a point [kg m^2] */
-    mct_real wheel_inertia;      /**< I_w [kg m^2] */
-    mct_real weight_moment;      /**< (S_a + m_w l) g [N m], 0 with gravity off */
-    mct_real gravity;            /**< [m/s^2], 0 when off */
-    mct_real arm_viscous;        /**< nu_1 [N m s], 0 when off */
-    mct_real wheel_viscous;      /**< nu_2 [N m s], 0 when off */
-    mct_real wheel_damping;      /**< nu_2 and the back-emf of a quasi-static motor [N m s] */
-    mct_real coulomb[2];         /**< dry friction [N m] */
-    mct_real inverse_arm;        /**< 1 / arm_inertia */
-    mct_real inverse_wheel;      /**< 1 / wheel_inertia */
-    mct_symmetric2 inverse_mass; /**< M^-1 */
-    mct_symmetric2 implicit;     /**< (M + h D)^-1, for euler */
-    mct_symmetric2 symmetric;    /**< (M + h D / 2)^-1, the averaged motor included, for leap */
+    mct_real arm_inertia;     /**< m_w l^2 + I_a: about the pivot, the wheel as a point [kg m^2] */
+    mct_real wheel_inertia;   /**< I_w [kg m^2] */
+    mct_real weight_moment;   /**< (S_a + m_w l) g [N m], 0 with gravity off */
+    mct_real gravity;         /**< [m/s^2], 0 when off */
+    mct_real arm_viscous;     /**< nu_1 [N m s], 0 when off */
+    mct_real wheel_viscous;   /**< nu_2 [N m s], 0 when off */
+    mct_real wheel_damping;   /**< nu_2 and the back-emf of a quasi-static motor [N m s] */
+    mct_real coulomb[2];      /**< dry friction [N m] */
+    mct_real inverse_arm;     /**< 1 / arm_inertia */
+    mct_real inverse_wheel;   /**< 1 / wheel_inertia */
+    mct_inertia2 inertia;     /**< M and M^-1 */
+    mct_symmetric2 implicit;  /**< (M + h D)^-1, for euler */
+    mct_symmetric2 symmetric; /**< (M + h D / 2)^-1, the averaged motor included, for leap */
     mct_motor motor;
     mct_expo expo;
     /* geometry of the equivalent particles */

@@ -159,4 +159,29 @@ MCT_INLINE void mct_sincos_turn(int32_t binary_angle, mct_real *s, mct_real *c)
 #endif
 }
 
+/**
+ * Sine and cosine of an angle that lies `delta` from one whose sine and cosine are (s0, c0), by the addition
+ * theorem and short series, which leave out less than a tenth of a rounding; beyond |delta| = 1/16 rad as
+ * mct_sincos. Half its cost; two roundings more.
+ */
+MCT_INLINE void mct_sincos_near(mct_real angle, mct_real delta, mct_real s0, mct_real c0, mct_real *s,
+                                mct_real *c)
+{
+    if (!(delta <= MCT_R(0.0625) && delta >= MCT_R(-0.0625))) {
+        mct_sincos(angle, s, c);
+        return;
+    }
+    const mct_real z = delta * delta;
+#if MCT_REAL_IS_FLOAT
+    const mct_real sine = delta + delta * (z * (-1.0F / 6 + z * (1.0F / 120)));
+    const mct_real versine = z * (0.5F - z * (1.0F / 24));
+#else
+    const mct_real sine =
+        delta + delta * (z * (-1.0 / 6 + z * (1.0 / 120 + z * (-1.0 / 5040 + z * (1.0 / 362880)))));
+    const mct_real versine = z * (0.5 - z * (1.0 / 24 - z * (1.0 / 720 - z * (1.0 / 40320))));
+#endif
+    *s = s0 + (c0 * sine - s0 * versine);
+    *c = c0 - (s0 * sine + c0 * versine);
+}
+
 #endif

@@ -1,6 +1,6 @@
 /**
  * @file symmetric2.h
- * A symmetric 2 x 2 matrix: an inverse mass matrix, say.
+ * Symmetric 2 x 2 matrices: the inertia of a system with two coordinates.
  */
 #ifndef MCTAU_SYMMETRIC2_H
 #define MCTAU_SYMMETRIC2_H
@@ -10,5 +10,11 @@
 typedef struct {
     mct_real a11, a12, a22;
 } mct_symmetric2;
+
+/** A mass matrix and its inverse, each as exact as it can be had. */
+typedef struct {
+    mct_symmetric2 mass;
+    mct_symmetric2 inverse;
+} mct_inertia2;
 
 #endif

@@ -8,6 +8,14 @@
 #define PI   3.141592653589793238463
 #define TURN (2 * PI)
 
+/* Within +-pi, from within +-(2 pi + pi). */
+static mct_real wrapped(mct_real angle)
+{
+    const mct_real turns = angle > MCT_R(3 * PI) ? MCT_R(2 * TURN) : angle > MCT_R(PI) ? MCT_R(TURN) : 0;
+    const mct_real back = angle < MCT_R(-3 * PI) ? MCT_R(2 * TURN) : angle < MCT_R(-PI) ? MCT_R(TURN) : 0;
+    return angle - turns + back;
+}
+
 void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct_constants *constants)
 {
     const mct_system *system = mct_systems[scene->system];
@@ -35,7 +43,7 @@ void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct
             start -= TURN * (double)(int32_t)(start / TURN);
         }
         track->start = (mct_real)start;
-        observer->x[i] = (mct_real)start;
+        observer->x[i] = angle ? wrapped((mct_real)start) : (mct_real)start;
     }
 }
 
@@ -46,14 +54,6 @@ static int32_t counts_moved(const mct_encoder_track *track, int32_t counts, uint
     int32_t moved;
     memcpy(&moved, &difference, sizeof moved);
     return shift == 0 ? moved : moved / (int32_t)(1u << shift); /* exact: the low bits are zero */
-}
-
-/* Within +-pi, from within +-(2 pi + pi). */
-static mct_real wrapped(mct_real angle)
-{
-    const mct_real turns = angle > MCT_R(3 * PI) ? MCT_R(2 * TURN) : angle > MCT_R(PI) ? MCT_R(TURN) : 0;
-    const mct_real back = angle < MCT_R(-3 * PI) ? MCT_R(2 * TURN) : angle < MCT_R(-PI) ? MCT_R(TURN) : 0;
-    return angle - turns + back;
 }
 
 void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct_real input)

@@ -15,13 +15,14 @@
 #include "mctau/real.h"
 #include "mctau/symmetric2.h"
 
-/* W: inverse mass matrix; v: velocity without friction; bound: largest impulse; p: impulse (out). */
-static inline void mct_friction_impulse(mct_symmetric2 W, const mct_real *v, const mct_real *bound,
+/* v: velocity without friction; bound: largest impulse; p: impulse (out). */
+static inline void mct_friction_impulse(mct_inertia2 inertia, const mct_real *v, const mct_real *bound,
                                         mct_real *p)
 {
-    const mct_real det = W.a11 * W.a22 - W.a12 * W.a12;
-    const mct_real rest1 = -(W.a22 * v[0] - W.a12 * v[1]) / det;
-    const mct_real rest2 = -(W.a11 * v[1] - W.a12 * v[0]) / det;
+    const mct_symmetric2 M = inertia.mass;
+    const mct_symmetric2 W = inertia.inverse;
+    const mct_real rest1 = -(M.a11 * v[0] + M.a12 * v[1]);
+    const mct_real rest2 = -(M.a12 * v[0] + M.a22 * v[1]);
     if (rest1 >= -bound[0] && rest1 <= bound[0] && rest2 >= -bound[1] && rest2 <= bound[1]) {
         p[0] = rest1;
         p[1] = rest2;
@@ -49,10 +50,9 @@ static inline void mct_friction_impulse(mct_symmetric2 W, const mct_real *v, con
 
 /*
  * Friction forces at one instant: full size against a motion, and at rest what keeps a coordinate at rest, if
- * it can. W: inverse mass matrix; size: of the friction; v: rates; f: all other forces, C v included; dry:
- * friction (out).
+ * it can. size: of the friction; v: rates; f: all other forces, C v included; dry: friction (out).
  */
-static inline void mct_friction_force(mct_symmetric2 W, const mct_real *size, const mct_real *v,
+static inline void mct_friction_force(mct_inertia2 inertia, const mct_real *size, const mct_real *v,
                                       const mct_real *f, mct_real *dry)
 {
     mct_real moving[2];
@@ -62,8 +62,9 @@ static inline void mct_friction_force(mct_symmetric2 W, const mct_real *size, co
         bound[i] = v[i] == 0 ? size[i] : 0;
     }
     const mct_real g[2] = {f[0] + moving[0], f[1] + moving[1]};
+    const mct_symmetric2 W = inertia.inverse;
     const mct_real acceleration[2] = {W.a11 * g[0] + W.a12 * g[1], W.a12 * g[0] + W.a22 * g[1]};
-    mct_friction_impulse(W, acceleration, bound, dry);
+    mct_friction_impulse(inertia, acceleration, bound, dry);
     dry[0] += moving[0];
     dry[1] += moving[1];
 }
@@ -73,13 +74,14 @@ static inline void mct_friction_force(mct_symmetric2 W, const mct_real *size, co
  * given forces. A coordinate that comes to rest gets exactly the velocity 0, and travels h/2 times the
  * velocity it had.
  */
-static inline void mct_friction_correct(mct_symmetric2 W, const mct_real *force, mct_real h,
+static inline void mct_friction_correct(mct_inertia2 inertia, const mct_real *force, mct_real h,
                                         const mct_real *v, mct_real *dx)
 {
     const mct_real free_velocity[2] = {v[0] + dx[2], v[1] + dx[3]};
     const mct_real bound[2] = {h * force[0], h * force[1]};
     mct_real p[2];
-    mct_friction_impulse(W, free_velocity, bound, p);
+    mct_friction_impulse(inertia, free_velocity, bound, p);
+    const mct_symmetric2 W = inertia.inverse;
     const mct_real change[2] = {W.a11 * p[0] + W.a12 * p[1], W.a12 * p[0] + W.a22 * p[1]};
     for (int i = 0; i < 2; i++) {
         const bool rests = force[i] > 0 && p[i] > -bound[i] && p[i] < bound[i];

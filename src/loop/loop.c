@@ -53,6 +53,7 @@ void mct_loop_tick(mct_loop *loop)
     if (hal->write(loop->hal.context, record->applied) != MCT_OK) {
         mct_supervisor_fault(supervisor, MCT_FAULT_HAL);
         hal->stop(loop->hal.context);
+        record->applied = 0;
     }
     loop->applied = record->applied;
     record->faults = supervisor->latched;

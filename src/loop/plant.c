@@ -28,18 +28,27 @@ static bool is_sane(const mct_state *state)
 
 /*
  * Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone.
+ * Turns are subtracted by powers of two from the largest down, so that each difference is exact; the rest of
+ * a turn goes to the compensation.
  */
 static void take_turns(mct_state *state, int i)
 {
+    enum { LARGEST = 28 }; /* MCT_STATE_BOUND is less than 2^28 turns */
     const mct_real x = state->x[i];
     if (x <= turn && x >= -turn) {
         return;
     }
-    const int32_t turns = (int32_t)(x / turn);
-    const mct_real back = (mct_real)turns;
-    state->turns[i] += turns;
-    state->c[i] -= back * turn_rest;
-    mct_add_compensated(&state->x[i], &state->c[i], -back * turn);
+    const mct_real sign = x < 0 ? -1 : 1;
+    const int32_t turns = (int32_t)(sign * x / turn);
+    mct_real left = sign * x;
+    for (int bit = LARGEST; bit >= 0; bit--) {
+        if (turns & (1 << bit)) {
+            left -= (mct_real)(1 << bit) * turn;
+        }
+    }
+    const mct_real rest = state->c[i] - sign * (mct_real)turns * turn_rest;
+    state->turns[i] += x < 0 ? -turns : turns;
+    state->x[i] = mct_two_sum(sign * left, rest, &state->c[i]);
 }
 
 void mct_state_set(const mct_system *system, int states, const double *values, mct_state *state)
@@ -84,7 +93,8 @@ void mct_plant_step(mct_plant *plant, mct_real input)
     } else {
         plant->rejected_inputs++;
     }
-    const mct_state before = plant->state; /* in place: a copy of what a kernel has just written waits for its stores */
+    const mct_state before =
+        plant->state; /* in place: a copy of what a kernel has just written waits for its stores */
     plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
     if (is_sane(&plant->state)) {
         for (int i = 0; i < MCT_MAX_COORDINATES; i++) {

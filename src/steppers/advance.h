@@ -15,8 +15,12 @@
 typedef void (*mct_derivative)(const void *constants, unsigned effects, const mct_real *x, mct_real u,
                                mct_real *dx);
 
+/*
+ * `remainder` is what the rounding of the step's length leaves out of each increment, relative to it
+ * (mct_step); 0 where the increments are exact.
+ */
 MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, const void *constants,
-                            mct_step step, unsigned effects, int n, mct_state *state, mct_real input,
+                            mct_real remainder, unsigned effects, int n, mct_state *state, mct_real input,
                             int32_t steps)
 {
     const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
@@ -36,9 +40,9 @@ MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, 
         MCT_UNROLL
         for (int i = 0; i < states; i++) {
 #if MCT_REAL_IS_FLOAT
-            c[i] += step.remainder * dx[i];
+            c[i] += remainder * dx[i];
 #endif
-            if ((effects & MCT_COULOMB) && dx[i] == -x[i]) {
+            if ((effects & MCT_COULOMB) && i >= n && i < 2 * n && dx[i] == -x[i]) {
                 x[i] = 0; /* at rest exactly: nothing may creep */
                 c[i] = 0;
             } else {
@@ -46,7 +50,7 @@ MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, 
             }
         }
     }
-    (void)step;
+    (void)remainder;
     MCT_UNROLL
     for (int i = 0; i < states; i++) {
         state->x[i] = x[i];

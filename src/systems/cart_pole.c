@@ -137,8 +137,8 @@ MCT_INLINE bool is_pole_loaded(unsigned effects)
 }
 
 /* a = M^-1 (f1, f2), where f is tau - C v. */
-MCT_INLINE void solve(const constants_t *k, unsigned effects, mct_real s, mct_real c, mct_real f1, mct_real f2,
-                      mct_real *a)
+MCT_INLINE void solve(const constants_t *k, unsigned effects, mct_real s, mct_real c, mct_real f1,
+                      mct_real f2, mct_real *a)
 {
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     const mct_real c_over_l = c * k->inverse_length;
@@ -151,14 +151,12 @@ MCT_INLINE void solve(const constants_t *k, unsigned effects, mct_real s, mct_re
     a[1] = inverse * (k->mass_per_inertia * f2 - c_over_l * f1);
 }
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                           mct_real *dx)
+MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct_real *x, mct_real s,
+                              mct_real c, mct_real u, mct_real *dx)
 {
     const constants_t *k = constants;
     const mct_real pd = x[2];
     const mct_real thd = x[3];
-    mct_real s, c;
-    mct_sincos(x[1], &s, &c);
     const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
     mct_real f1 = mct_motor_force(&k->motor, effects, u, current) + k->moment * s * thd * thd;
     mct_real f2 = 0;
@@ -177,6 +175,14 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_rate(&k->motor, u, pd, current);
     }
+}
+
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    derivative_at(constants, effects, x, s, c, u, dx);
 }
 
 /*
@@ -278,10 +284,11 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     }
 }
 
-static mct_symmetric2 inverse_mass(const constants_t *k, mct_real s, mct_real c)
+static mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
 {
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
-    return (mct_symmetric2){inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia};
+    return (mct_inertia2){{k->total_mass, k->moment * c, k->inertia},
+                          {inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia}};
 }
 
 /* Dry friction at the middle of the step. */
@@ -293,7 +300,7 @@ static inline void friction(const void *constants, unsigned effects, const mct_r
     const constants_t *k = constants;
     mct_real s, c;
     mct_sincos(x[1] + MCT_R(0.5) * dx[1], &s, &c);
-    mct_friction_correct(inverse_mass(k, s, c), k->coulomb, k->step.h, x + 2, dx);
+    mct_friction_correct(inertia_at(k, s, c), k->coulomb, k->step.h, x + 2, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -321,7 +328,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real pole_viscous = -k->pole_viscous * thd;
     const mct_real smooth[2] = {drive + cart_viscous - out->Cv[0], k->weight_moment * s + pole_viscous};
     mct_real dry[2];
-    mct_friction_force(inverse_mass(k, s, c), k->coulomb, x + 2, smooth, dry);
+    mct_friction_force(inertia_at(k, s, c), k->coulomb, x + 2, smooth, dry);
     solve(k, MCT_KERNEL_EFFECTS, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
     out->tau[0] = drive + cart_viscous + dry[0];
     out->tau[1] = k->weight_moment * s + pole_viscous + dry[1];
@@ -400,10 +407,10 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
     };
 }
 
-MCT_STEPPER_KERNELS(seed, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(euler, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(leap, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(rk4, mct_rk4(derivative, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 1, k, k->step, effects, 2, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {

@@ -195,7 +195,8 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     const double d2 = (double)k->wheel_damping;
     const double averaged_motor =
         (double)k->motor.force_per_ampere * (double)k->motor.emf * (double)k->motor.mean_from_change;
-    k->inverse_mass = inverse_of(J, I_w, 0, 0);
+    k->inertia.inverse = inverse_of(J, I_w, 0, 0);
+    k->inertia.mass = (mct_symmetric2){(mct_real)(J + I_w), (mct_real)I_w, (mct_real)I_w};
     k->implicit = inverse_of(J, I_w, h * d1, h * d2);
     k->symmetric = inverse_of(J, I_w, 0.5 * h * d1, 0.5 * h * d2 + h * averaged_motor);
 
@@ -225,17 +226,12 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return status;
 }
 
-/* tau at arm angle and rates. */
-MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real angle, const mct_real *v,
-                        mct_real drive, mct_real *tau)
+/* tau at the sine of the arm's angle, and rates. */
+MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real s, const mct_real *v, mct_real drive,
+                        mct_real *tau)
 {
-    tau[0] = 0;
+    tau[0] = (effects & MCT_GRAVITY) ? k->weight_moment * s : 0;
     tau[1] = drive;
-    if (effects & MCT_GRAVITY) {
-        mct_real s, c;
-        mct_sincos(angle, &s, &c);
-        tau[0] = k->weight_moment * s;
-    }
     if (effects & MCT_VISCOUS) {
         tau[0] -= k->arm_viscous * v[0];
     }
@@ -244,13 +240,14 @@ MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real angle, 
     }
 }
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                           mct_real *dx)
+MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct_real *x, mct_real s,
+                              mct_real c, mct_real u, mct_real *dx)
 {
+    (void)c;
     const constants_t *k = constants;
     const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
     mct_real tau[2];
-    torques(k, effects, x[0], x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
+    torques(k, effects, s, x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
     dx[0] = x[2];
     dx[1] = x[3];
     dx[2] = (tau[0] - tau[1]) * k->inverse_arm;
@@ -258,6 +255,14 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_rate(&k->motor, u, x[3], current);
     }
+}
+
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
+    derivative_at(constants, effects, x, s, c, u, dx);
 }
 
 MCT_INLINE void impulse(mct_symmetric2 inverse, mct_real h, const mct_real *tau, mct_real *dv)
@@ -276,8 +281,10 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
         current = mct_motor_implicit_current(&k->motor, k->step.h, u, x[3], x[4]);
         dx[4] = current - x[4];
     }
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
     mct_real tau[2];
-    torques(k, effects, x[0], x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
+    torques(k, effects, s, x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
     impulse(k->implicit, k->step.h, tau, dx + 2);
 }
 
@@ -290,8 +297,10 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     if (effects & MCT_MOTOR_INDUCTIVE) {
         current = mct_motor_mean_current(&k->motor, u, x[3], x[4]);
     }
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
     mct_real tau[2];
-    torques(k, effects, x[0], x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
+    torques(k, effects, s, x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
     impulse(k->symmetric, k->step.h, tau, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_change(&k->motor, u, x[3], x[4], dx[3]);
@@ -313,7 +322,7 @@ static inline void friction(const void *constants, unsigned effects, const mct_r
     (void)effects;
     (void)u;
     const constants_t *k = constants;
-    mct_friction_correct(k->inverse_mass, k->coulomb, k->step.h, x + 2, dx);
+    mct_friction_correct(k->inertia, k->coulomb, k->step.h, x + 2, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -339,7 +348,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real smooth[2] = {k->weight_moment * s - k->arm_viscous * arm_rate,
                                 drive - k->wheel_viscous * wheel_rate};
     mct_real dry[2];
-    mct_friction_force(k->inverse_mass, k->coulomb, x + 2, smooth, dry);
+    mct_friction_force(k->inertia, k->coulomb, x + 2, smooth, dry);
     out->tau[0] = smooth[0] + dry[0];
     out->tau[1] = smooth[1] + dry[1];
     out->acceleration[0] = (out->tau[0] - out->tau[1]) * k->inverse_arm;
@@ -417,11 +426,11 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
     model->A[3 * 4 + 0] += e[3] * stiffness;
 }
 
-MCT_STEPPER_KERNELS(seed, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(euler, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(leap, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(rk4, mct_rk4(derivative, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(expo, mct_expo_increments(weight, k, &k->expo, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 0, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(expo, 0, mct_expo_increments(weight, k, &k->expo, effects, 2, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {

@@ -17,7 +17,7 @@ void tearDown(void)
 }
 
 typedef struct {
-    mct_symmetric2 W;
+    mct_inertia2 inertia;
     mct_real v[2];
     mct_real bound[2];
     mct_real p[2];
@@ -31,15 +31,20 @@ static impulse_case draw(test_random *random)
     const double b = random_scale(random, 1e-2, 1e2);
     const double coupling =
         random_in(random, -0.99, 0.99); /* condition up to some 200, as a reaction wheel's */
-    self.W = (mct_symmetric2){(mct_real)a, (mct_real)(coupling * sqrt(a * b)), (mct_real)b};
+    const double off = coupling * sqrt(a * b);
+    const double det = a * b - off * off;
+    self.inertia.inverse = (mct_symmetric2){(mct_real)a, (mct_real)off, (mct_real)b};
+    self.inertia.mass = (mct_symmetric2){(mct_real)(b / det), (mct_real)(-off / det), (mct_real)(a / det)};
     for (int i = 0; i < 2; i++) {
         self.v[i] = (mct_real)random_in(random, -1, 1);
         self.bound[i] = random_bits(random) % 8 == 0 ? 0 : (mct_real)random_scale(random, 1e-4, 10);
     }
-    mct_friction_impulse(self.W, self.v, self.bound, self.p);
-    const double W12 = (double)self.W.a12;
-    self.after[0] = (double)self.v[0] + (double)self.W.a11 * (double)self.p[0] + W12 * (double)self.p[1];
-    self.after[1] = (double)self.v[1] + W12 * (double)self.p[0] + (double)self.W.a22 * (double)self.p[1];
+    mct_friction_impulse(self.inertia, self.v, self.bound, self.p);
+    const double W12 = (double)self.inertia.inverse.a12;
+    self.after[0] =
+        (double)self.v[0] + (double)self.inertia.inverse.a11 * (double)self.p[0] + W12 * (double)self.p[1];
+    self.after[1] =
+        (double)self.v[1] + W12 * (double)self.p[0] + (double)self.inertia.inverse.a22 * (double)self.p[1];
     return self;
 }
 
@@ -60,13 +65,13 @@ static void test_a_coordinate_rests_or_slides_against_the_full_bound(void)
     int resting[3] = {0, 0, 0};
     for (int k = 0; k < CASES; k++) {
         const impulse_case now = draw(&random);
-        const double W[2] = {(double)now.W.a11, (double)now.W.a22};
+        const double W[2] = {(double)now.inertia.inverse.a11, (double)now.inertia.inverse.a22};
         int rests = 0;
         for (int i = 0; i < 2; i++) {
             const double p = (double)now.p[i];
             const double bound = (double)now.bound[i];
-            const double terms =
-                fabs((double)now.v[i]) + W[i] * fabs(p) + fabs((double)now.W.a12 * (double)now.p[1 - i]);
+            const double terms = fabs((double)now.v[i]) + W[i] * fabs(p) +
+                                 fabs((double)now.inertia.inverse.a12 * (double)now.p[1 - i]);
             const double zero = 1000 * (double)MCT_REAL_EPSILON * terms;
             TEST_ASSERT_TRUE(fabs(p) <= bound);
             if (now.after[i] > zero) {
@@ -88,8 +93,8 @@ static void test_friction_never_adds_energy(void)
     test_random random = {8};
     for (int k = 0; k < CASES; k++) {
         const impulse_case now = draw(&random);
-        const double before = energy(&now.W, (double)now.v[0], (double)now.v[1]);
-        const double after = energy(&now.W, now.after[0], now.after[1]);
+        const double before = energy(&now.inertia.inverse, (double)now.v[0], (double)now.v[1]);
+        const double after = energy(&now.inertia.inverse, now.after[0], now.after[1]);
         TEST_ASSERT_TRUE(after <= before * (1 + 1000 * (double)MCT_REAL_EPSILON));
     }
 }
@@ -100,11 +105,11 @@ static void test_without_bounds_there_is_no_impulse_and_with_large_ones_all_come
     for (int k = 0; k < 1000; k++) {
         impulse_case now = draw(&random);
         const mct_real none[2] = {0, 0};
-        mct_friction_impulse(now.W, now.v, none, now.p);
+        mct_friction_impulse(now.inertia, now.v, none, now.p);
         TEST_ASSERT_TRUE(now.p[0] == 0 && now.p[1] == 0);
         const mct_real large[2] = {MCT_R(1e9), MCT_R(1e9)};
         mct_real dx[4] = {MCT_R(0.5), MCT_R(0.25), MCT_R(0.125), MCT_R(-0.125)};
-        mct_friction_correct(now.W, large, MCT_R(0.001), now.v, dx);
+        mct_friction_correct(now.inertia, large, MCT_R(0.001), now.v, dx);
         for (int i = 0; i < 2; i++) {
             TEST_ASSERT_TRUE(dx[2 + i] == -now.v[i]); /* exactly */
         }

@@ -9,21 +9,24 @@
 #include "mctau/gauss.h"
 #include "unity.h"
 
-#define EPSILON ((double)MCT_REAL_EPSILON)
+#define EPSILON    ((double)MCT_REAL_EPSILON)
 #define NEAR(size) (64.0 * EPSILON * (size)) /* some tens of roundings of terms of this size */
-#define GRAVITY 9.81
+#define GRAVITY    9.81
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 static mct_gauss_workspace workspace;
 static mct_gauss_motion motion;
 
 static mct_status move(const mct_gauss_system *system, double time, const mct_real *q, const mct_real *v,
-                       const mct_real *force, const mct_real *couple) {
+                       const mct_real *force, const mct_real *couple)
+{
     const mct_status status = mct_gauss_kinematics(system, MCT_R(time), q, v, &workspace, &motion);
     return status != MCT_OK ? status : mct_gauss_dynamics(system, force, couple, &workspace, &motion);
 }
@@ -31,20 +34,23 @@ static mct_status move(const mct_gauss_system *system, double time, const mct_re
 /* Numbers in [-1, 1), the same on every machine and in both precisions. */
 static uint64_t random_state = 1;
 
-static mct_real random_number(void) {
+static mct_real random_number(void)
+{
     random_state ^= random_state >> 12;
     random_state ^= random_state << 25;
     random_state ^= random_state >> 27;
     return (mct_real)((double)((random_state * UINT64_C(2685821657736338717)) >> 48) * 0x1p-15 - 1.0);
 }
 
-static void fill_randomly(int count, mct_real *numbers) {
+static void fill_randomly(int count, mct_real *numbers)
+{
     for (int i = 0; i < count; i++) {
         numbers[i] = random_number();
     }
 }
 
-static double dot3(const mct_real *a, const mct_real *b) {
+static double dot3(const mct_real *a, const mct_real *b)
+{
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
@@ -57,7 +63,8 @@ typedef struct {
 } pendulum;
 
 static void place_pendulum(const void *context, mct_hyperdual time, const mct_hyperdual *q,
-                           mct_hyperdual (*position)[3]) {
+                           mct_hyperdual (*position)[3])
+{
     const pendulum *const self = context;
     mct_hyperdual sine;
     mct_hyperdual cosine;
@@ -71,7 +78,8 @@ static void place_pendulum(const void *context, mct_hyperdual time, const mct_hy
     position[0][2] = mct_hyperdual_constant(MCT_R(0.0));
 }
 
-static void test_pendulum_is_held_by_the_constraint_force_of_equation_38(void) {
+static void test_pendulum_is_held_by_the_constraint_force_of_equation_38(void)
+{
     const pendulum rod = {MCT_R(0.5), {MCT_R(0.0), MCT_R(0.0)}, {MCT_R(0.0), MCT_R(0.0)}};
     const mct_real mass[] = {MCT_R(2.0)};
     const mct_gauss_system system = {1, 1, mass, place_pendulum, &rod};
@@ -95,7 +103,8 @@ static void test_pendulum_is_held_by_the_constraint_force_of_equation_38(void) {
     }
 }
 
-static void test_pendulum_on_a_moving_base_obeys_equation_187(void) {
+static void test_pendulum_on_a_moving_base_obeys_equation_187(void)
+{
     const pendulum shaken = {MCT_R(0.7), {MCT_R(0.05), MCT_R(0.02)}, {MCT_R(11.0), MCT_R(17.0)}};
     const mct_real mass[] = {MCT_R(1.5)};
     const mct_gauss_system system = {1, 1, mass, place_pendulum, &shaken};
@@ -134,7 +143,8 @@ static void test_pendulum_on_a_moving_base_obeys_equation_187(void) {
 /* ---- the spring pendulum (1.3) ---- */
 
 static void place_spring_pendulum(const void *context, mct_hyperdual time, const mct_hyperdual *q,
-                                  mct_hyperdual (*position)[3]) {
+                                  mct_hyperdual (*position)[3])
+{
     (void)context;
     (void)time;
     position[0][0] = mct_hyperdual_mul(q[0], mct_hyperdual_cos(q[1]));
@@ -142,7 +152,8 @@ static void place_spring_pendulum(const void *context, mct_hyperdual time, const
     position[0][2] = mct_hyperdual_constant(MCT_R(0.0));
 }
 
-static void test_spring_pendulum_has_the_matrices_42_and_47(void) {
+static void test_spring_pendulum_has_the_matrices_42_and_47(void)
+{
     const mct_real mass[] = {MCT_R(1.2)};
     const mct_gauss_system system = {1, 2, mass, place_spring_pendulum, NULL};
     const mct_real q[] = {MCT_R(0.8), MCT_R(1.1)};
@@ -165,7 +176,8 @@ static void test_spring_pendulum_has_the_matrices_42_and_47(void) {
     }
 }
 
-static void test_a_mass_matrix_without_inverse_is_reported(void) {
+static void test_a_mass_matrix_without_inverse_is_reported(void)
+{
     const mct_real mass[] = {MCT_R(1.2)};
     const mct_gauss_system system = {1, 2, mass, place_spring_pendulum, NULL};
     const mct_real q[] = {MCT_R(0.0), MCT_R(1.1)}; /* at the pivot the angle moves nothing */
@@ -181,7 +193,8 @@ static void test_a_mass_matrix_without_inverse_is_reported(void) {
 /* ---- two linked particles (2.2) ---- */
 
 static void place_linked(const void *context, mct_hyperdual time, const mct_hyperdual *q,
-                         mct_hyperdual (*position)[3]) {
+                         mct_hyperdual (*position)[3])
+{
     const mct_real *const separation = context;
     const mct_hyperdual zero = mct_hyperdual_constant(MCT_R(0.0));
     (void)time;
@@ -192,7 +205,8 @@ static void place_linked(const void *context, mct_hyperdual time, const mct_hype
     }
 }
 
-static void test_a_link_shares_a_push_by_mass_as_in_103_corrected(void) {
+static void test_a_link_shares_a_push_by_mass_as_in_103_corrected(void)
+{
     const mct_real separation = MCT_R(0.3);
     const mct_real mass[] = {MCT_R(1.0), MCT_R(3.0)};
     const mct_gauss_system system = {2, 1, mass, place_linked, &separation};
@@ -212,7 +226,8 @@ static void test_a_link_shares_a_push_by_mass_as_in_103_corrected(void) {
 /* ---- the cart-pole (2.4) ---- */
 
 static void place_cart_pole(const void *context, mct_hyperdual time, const mct_hyperdual *q,
-                            mct_hyperdual (*position)[3]) {
+                            mct_hyperdual (*position)[3])
+{
     const mct_real *const length = context;
     const mct_hyperdual zero = mct_hyperdual_constant(MCT_R(0.0));
     (void)time;
@@ -224,7 +239,8 @@ static void place_cart_pole(const void *context, mct_hyperdual time, const mct_h
     position[1][2] = zero;
 }
 
-static void test_cart_pole_with_joint_friction_obeys_its_closed_form(void) {
+static void test_cart_pole_with_joint_friction_obeys_its_closed_form(void)
+{
     const double m1 = 1.0;
     const double m2 = 0.25;
     const double l = 0.5;
@@ -259,13 +275,15 @@ static void test_cart_pole_with_joint_friction_obeys_its_closed_form(void) {
 /* ---- a particle under no constraint ---- */
 
 static void place_freely(const void *context, mct_hyperdual time, const mct_hyperdual *q,
-                         mct_hyperdual (*position)[3]) {
+                         mct_hyperdual (*position)[3])
+{
     (void)context;
     (void)time;
     memcpy(position[0], q, 3 * sizeof *q);
 }
 
-static void test_a_particle_under_no_constraint_feels_none(void) {
+static void test_a_particle_under_no_constraint_feels_none(void)
+{
     const mct_real mass[] = {MCT_R(4.0)};
     const mct_gauss_system system = {1, 3, mass, place_freely, NULL};
     const mct_real q[] = {MCT_R(1.0), MCT_R(2.0), MCT_R(3.0)};
@@ -288,7 +306,8 @@ typedef struct {
 } chain;
 
 static void place_chain(const void *context, mct_hyperdual time, const mct_hyperdual *q,
-                        mct_hyperdual (*position)[3]) {
+                        mct_hyperdual (*position)[3])
+{
     const chain *const self = context;
     mct_hyperdual x[3] = {mct_hyperdual_constant(MCT_R(0.2)), mct_hyperdual_constant(MCT_R(0.0)),
                           mct_hyperdual_constant(MCT_R(0.1))};
@@ -322,7 +341,8 @@ typedef struct {
     mct_real couple[D];
 } scene;
 
-static void make_scene(scene *self, int particles, int coordinates, double table_rate) {
+static void make_scene(scene *self, int particles, int coordinates, double table_rate)
+{
     self->shape = (chain){particles, coordinates, MCT_R(table_rate)};
     self->system = (mct_gauss_system){particles, coordinates, self->mass, place_chain, &self->shape};
     fill_randomly(D, self->q);
@@ -334,12 +354,14 @@ static void make_scene(scene *self, int particles, int coordinates, double table
     }
 }
 
-static mct_status move_scene(const scene *self) {
+static mct_status move_scene(const scene *self)
+{
     return move(&self->system, 0.3, self->q, self->v, self->force, self->couple);
 }
 
 /* Size of the forces in play: what roundings are relative to. */
-static double force_size(const scene *self) {
+static double force_size(const scene *self)
+{
     double size = 1.0;
     for (int i = 0; i < self->system.particle_count; i++) {
         const mct_real *const a = motion.particle_acceleration[i];
@@ -349,7 +371,8 @@ static double force_size(const scene *self) {
     return size;
 }
 
-static void test_the_equation_of_motion_holds_for_any_chain(void) {
+static void test_the_equation_of_motion_holds_for_any_chain(void)
+{
     for (int trial = 0; trial < TRIALS; trial++) {
         scene s;
         make_scene(&s, trial % 2 ? P : 5, trial % 3 ? D : 4, 0.7 * (trial % 4));
@@ -366,7 +389,8 @@ static void test_the_equation_of_motion_holds_for_any_chain(void) {
     }
 }
 
-static void test_the_residual_of_the_least_squares_is_the_constraint_force(void) {
+static void test_the_residual_of_the_least_squares_is_the_constraint_force(void)
+{
     for (int trial = 0; trial < TRIALS; trial++) {
         scene s;
         make_scene(&s, trial % 2 ? P : 5, trial % 3 ? D : 4, 0.7 * (trial % 4));
@@ -381,7 +405,8 @@ static void test_the_residual_of_the_least_squares_is_the_constraint_force(void)
     }
 }
 
-static void test_static_constraints_pass_on_couples_and_do_no_work_of_their_own(void) {
+static void test_static_constraints_pass_on_couples_and_do_no_work_of_their_own(void)
+{
     for (int trial = 0; trial < TRIALS; trial++) {
         scene s;
         make_scene(&s, trial % 2 ? P : 5, trial % 3 ? D : 4, 0.0);
@@ -403,7 +428,8 @@ static void test_static_constraints_pass_on_couples_and_do_no_work_of_their_own(
     }
 }
 
-static void test_no_other_acceleration_needs_a_smaller_constraint(void) {
+static void test_no_other_acceleration_needs_a_smaller_constraint(void)
+{
     for (int trial = 0; trial < TRIALS; trial++) {
         scene s;
         make_scene(&s, 6, 4, 0.7 * (trial % 4));
@@ -441,7 +467,8 @@ static void test_no_other_acceleration_needs_a_smaller_constraint(void) {
     }
 }
 
-static void test_mass_matrix_is_symmetric_to_the_bit_and_its_energy_that_of_the_particles(void) {
+static void test_mass_matrix_is_symmetric_to_the_bit_and_its_energy_that_of_the_particles(void)
+{
     for (int trial = 0; trial < TRIALS; trial++) {
         scene s;
         make_scene(&s, trial % 2 ? P : 5, trial % 3 ? D : 4, 0.0);
@@ -462,7 +489,8 @@ static void test_mass_matrix_is_symmetric_to_the_bit_and_its_energy_that_of_the_
     }
 }
 
-static void test_the_matrix_C_times_the_rates_is_the_whole_bias_without_explicit_time(void) {
+static void test_the_matrix_C_times_the_rates_is_the_whole_bias_without_explicit_time(void)
+{
     for (int trial = 0; trial < TRIALS; trial++) {
         scene s;
         make_scene(&s, trial % 2 ? P : 5, trial % 3 ? D : 4, 0.0);
@@ -479,7 +507,8 @@ static void test_the_matrix_C_times_the_rates_is_the_whole_bias_without_explicit
     }
 }
 
-static void test_C_plus_its_transpose_is_the_rate_of_the_mass_matrix(void) {
+static void test_C_plus_its_transpose_is_the_rate_of_the_mass_matrix(void)
+{
     for (int trial = 0; trial < 10; trial++) {
         scene s;
         make_scene(&s, 5, 4, 0.0);
@@ -506,7 +535,8 @@ static void test_C_plus_its_transpose_is_the_rate_of_the_mass_matrix(void) {
     }
 }
 
-static void test_bad_systems_are_refused(void) {
+static void test_bad_systems_are_refused(void)
+{
     scene s;
     make_scene(&s, 5, 4, 0.0);
     mct_gauss_system bad = s.system;
@@ -539,7 +569,8 @@ static void test_bad_systems_are_refused(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_SINGULAR, move_scene(&s));
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_pendulum_is_held_by_the_constraint_force_of_equation_38);
     RUN_TEST(test_pendulum_on_a_moving_base_obeys_equation_187);

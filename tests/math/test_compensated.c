@@ -6,13 +6,16 @@
 
 #define EPSILON ((double)MCT_REAL_EPSILON)
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
-static void test_two_sum_loses_nothing(void) {
+static void test_two_sum_loses_nothing(void)
+{
     mct_real error;
     const mct_real small = MCT_REAL_EPSILON / 8;
     mct_real sum = mct_two_sum(MCT_R(1.0), small, &error);
@@ -29,7 +32,8 @@ static void test_two_sum_loses_nothing(void) {
     }
 }
 
-static void test_increments_too_small_for_the_value_add_up(void) {
+static void test_increments_too_small_for_the_value_add_up(void)
+{
     mct_real value = MCT_R(1.0);
     mct_real compensation = MCT_R(0.0);
     mct_real plain = MCT_R(1.0);
@@ -43,7 +47,8 @@ static void test_increments_too_small_for_the_value_add_up(void) {
 }
 
 /* Two roundings of the result, whatever the number of terms; the plain sum is off by thousands. */
-static void test_a_million_steps_err_like_one(void) {
+static void test_a_million_steps_err_like_one(void)
+{
     mct_real value = MCT_R(0.0);
     mct_real compensation = MCT_R(0.0);
     mct_real plain = MCT_R(0.0);
@@ -57,7 +62,8 @@ static void test_a_million_steps_err_like_one(void) {
     TEST_ASSERT_TRUE(fabs((double)plain - exact) > 1000 * EPSILON * exact);
 }
 
-static void test_a_value_that_swings_through_zero_returns_to_its_start(void) {
+static void test_a_value_that_swings_through_zero_returns_to_its_start(void)
+{
     mct_real value = MCT_R(0.1);
     mct_real compensation = MCT_R(0.0);
     for (int turn = 0; turn < 1000; turn++) {
@@ -71,7 +77,8 @@ static void test_a_value_that_swings_through_zero_returns_to_its_start(void) {
     TEST_ASSERT_DOUBLE_WITHIN(EPSILON, (double)MCT_R(0.1), (double)value);
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_two_sum_loses_nothing);
     RUN_TEST(test_increments_too_small_for_the_value_add_up);

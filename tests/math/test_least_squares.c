@@ -9,15 +9,18 @@
 
 enum { ROWS = MCT_LEAST_SQUARES_MAX_ROWS, COLUMNS = MCT_LEAST_SQUARES_MAX_COLUMNS };
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 static uint64_t random_state;
 
-static mct_real random_number(void) {
+static mct_real random_number(void)
+{
     random_state ^= random_state >> 12;
     random_state ^= random_state << 25;
     random_state ^= random_state >> 27;
@@ -37,7 +40,8 @@ typedef struct {
     mct_real estimate[COLUMNS];
 } problem;
 
-static mct_status solve(problem *self, bool pulled) {
+static mct_status solve(problem *self, bool pulled)
+{
     memcpy(self->spent, self->design, sizeof self->spent);
     memcpy(self->residual, self->observed, sizeof self->residual);
     return mct_least_squares(self->rows, self->columns, self->spent, self->weight, self->residual,
@@ -45,7 +49,8 @@ static mct_status solve(problem *self, bool pulled) {
 }
 
 /* Weights over four decades, as the masses of a mechanism may be. */
-static void fill(problem *self, int rows, int columns) {
+static void fill(problem *self, int rows, int columns)
+{
     random_state = (uint64_t)(1 + rows * 100 + columns);
     self->rows = rows;
     self->columns = columns;
@@ -64,7 +69,8 @@ static void fill(problem *self, int rows, int columns) {
 static const int shapes[][2] = {{1, 1}, {3, 1}, {3, 3}, {6, 2}, {30, 5}, {ROWS, COLUMNS}};
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
-static double weighted_size(const problem *self) {
+static double weighted_size(const problem *self)
+{
     double sum = 1.0;
     for (int i = 0; i < self->rows; i++) {
         sum += (double)self->weight[i];
@@ -72,7 +78,8 @@ static double weighted_size(const problem *self) {
     return sum;
 }
 
-static void test_residual_is_orthogonal_to_every_column_in_the_metric_of_the_weights(void) {
+static void test_residual_is_orthogonal_to_every_column_in_the_metric_of_the_weights(void)
+{
     for (int k = 0; k < SHAPES; k++) {
         problem p;
         fill(&p, shapes[k][0], shapes[k][1]);
@@ -87,7 +94,8 @@ static void test_residual_is_orthogonal_to_every_column_in_the_metric_of_the_wei
     }
 }
 
-static void test_residual_is_the_observation_less_the_estimate(void) {
+static void test_residual_is_the_observation_less_the_estimate(void)
+{
     for (int k = 0; k < SHAPES; k++) {
         for (int pulled = 0; pulled < 2; pulled++) {
             problem p;
@@ -110,7 +118,8 @@ static void test_residual_is_the_observation_less_the_estimate(void) {
     }
 }
 
-static void test_a_pull_is_what_the_weighted_residual_balances(void) {
+static void test_a_pull_is_what_the_weighted_residual_balances(void)
+{
     for (int k = 0; k < SHAPES; k++) {
         problem p;
         fill(&p, shapes[k][0], shapes[k][1]);
@@ -127,7 +136,8 @@ static void test_a_pull_is_what_the_weighted_residual_balances(void) {
     }
 }
 
-static void test_weights_weigh(void) {
+static void test_weights_weigh(void)
+{
     /* one unknown, two readings: the weighted mean */
     mct_real design[] = {MCT_R(1.0), MCT_R(1.0)};
     const mct_real weight[] = {MCT_R(3.0), MCT_R(1.0)};
@@ -139,7 +149,8 @@ static void test_weights_weigh(void) {
     TEST_ASSERT_DOUBLE_WITHIN(32 * EPSILON, 6.0, (double)observed[1]);
 }
 
-static void test_normal_equations_that_would_fail_are_not_formed(void) {
+static void test_normal_equations_that_would_fail_are_not_formed(void)
+{
     /* x'x = [[1 + d^2, 1], [1, 1 + d^2]] is singular to rounding; x is not */
     const mct_real d = MCT_REAL_IS_FLOAT ? MCT_R(1e-4) : MCT_R(1e-9);
     mct_real design[] = {MCT_R(1.0), MCT_R(1.0), d, MCT_R(0.0), MCT_R(0.0), d};
@@ -151,7 +162,8 @@ static void test_normal_equations_that_would_fail_are_not_formed(void) {
     TEST_ASSERT_DOUBLE_WITHIN(8 * EPSILON / (double)d, 2.0, (double)b[1]);
 }
 
-static void test_units_of_a_column_do_not_change_its_rank(void) {
+static void test_units_of_a_column_do_not_change_its_rank(void)
+{
     mct_real design[] = {MCT_R(1.0), MCT_R(1e-9), MCT_R(1.0), MCT_R(-1e-9)};
     const mct_real weight[] = {MCT_R(1.0), MCT_R(1.0)};
     mct_real observed[] = {MCT_R(3.0), MCT_R(1.0)};
@@ -161,7 +173,8 @@ static void test_units_of_a_column_do_not_change_its_rank(void) {
     TEST_ASSERT_DOUBLE_WITHIN(16 * EPSILON, 1.0, 1e-9 * (double)b[1]);
 }
 
-static void test_columns_that_depend_on_each_other_are_reported(void) {
+static void test_columns_that_depend_on_each_other_are_reported(void)
+{
     problem p;
     fill(&p, 30, 4);
     for (int i = 0; i < p.rows; i++) {
@@ -177,7 +190,8 @@ static void test_columns_that_depend_on_each_other_are_reported(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_SINGULAR, solve(&p, false));
 }
 
-static void test_bad_problems_are_refused(void) {
+static void test_bad_problems_are_refused(void)
+{
     problem p;
     fill(&p, 6, 2);
     p.weight[4] = MCT_R(0.0);
@@ -199,7 +213,8 @@ static void test_bad_problems_are_refused(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_BOUND, solve(&p, false));
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_residual_is_orthogonal_to_every_column_in_the_metric_of_the_weights);
     RUN_TEST(test_residual_is_the_observation_less_the_estimate);

@@ -9,15 +9,18 @@
 static const double infinity = (double)INFINITY;
 static const double not_a_number = (double)NAN;
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 static uint64_t random_state = 1;
 
-static uint64_t random_bits(void) {
+static uint64_t random_bits(void)
+{
     random_state ^= random_state >> 12;
     random_state ^= random_state << 25;
     random_state ^= random_state >> 27;
@@ -25,25 +28,29 @@ static uint64_t random_bits(void) {
 }
 
 /* In [-1, 1) */
-static double random_number(void) {
+static double random_number(void)
+{
     return (double)(random_bits() >> 11) * 0x1p-52 - 1.0;
 }
 
-static double from_bits(uint64_t bits) {
+static double from_bits(uint64_t bits)
+{
     double x;
     memcpy(&x, &bits, sizeof x);
     return x;
 }
 
 /* IEEE requires a correctly rounded root of libm's sqrt, so it is a reference to the bit. */
-static void test_square_root_is_correctly_rounded(void) {
+static void test_square_root_is_correctly_rounded(void)
+{
     for (int i = 0; i < 300000; i++) {
         const double x = from_bits(random_bits() & UINT64_C(0x7fefffffffffffff));
         TEST_ASSERT_TRUE(mct_sqrt(x) == sqrt(x));
     }
 }
 
-static void test_square_root_is_exact_for_squares_and_rounds_their_neighbours(void) {
+static void test_square_root_is_exact_for_squares_and_rounds_their_neighbours(void)
+{
     for (int i = 0; i < 20000; i++) {
         const double root = (double)(random_bits() >> 38);
         const double square = root * root;
@@ -53,9 +60,17 @@ static void test_square_root_is_exact_for_squares_and_rounds_their_neighbours(vo
     }
 }
 
-static void test_square_root_covers_the_ends_of_the_range(void) {
-    const double ends[] = {DBL_MAX, DBL_MIN, nextafter(DBL_MIN, 0.0), 0x1p-1074, 0x1.8p-1073, 1.0,
-                           nextafter(1.0, 0.0), nextafter(4.0, 0.0), nextafter(2.0, 0.0)};
+static void test_square_root_covers_the_ends_of_the_range(void)
+{
+    const double ends[] = {DBL_MAX,
+                           DBL_MIN,
+                           nextafter(DBL_MIN, 0.0),
+                           0x1p-1074,
+                           0x1.8p-1073,
+                           1.0,
+                           nextafter(1.0, 0.0),
+                           nextafter(4.0, 0.0),
+                           nextafter(2.0, 0.0)};
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
         TEST_ASSERT_TRUE(mct_sqrt(ends[i]) == sqrt(ends[i]));
     }
@@ -65,7 +80,8 @@ static void test_square_root_covers_the_ends_of_the_range(void) {
     }
 }
 
-static void test_square_root_of_what_has_none_is_nan_or_itself(void) {
+static void test_square_root_of_what_has_none_is_nan_or_itself(void)
+{
     TEST_ASSERT_TRUE(isnan(mct_sqrt(-1.0)) && !signbit(mct_sqrt(-1.0)));
     TEST_ASSERT_TRUE(isnan(mct_sqrt(-infinity)));
     TEST_ASSERT_TRUE(isnan(mct_sqrt(not_a_number)));
@@ -74,7 +90,8 @@ static void test_square_root_of_what_has_none_is_nan_or_itself(void) {
     TEST_ASSERT_TRUE(mct_sqrt(-0.0) == 0.0 && signbit(mct_sqrt(-0.0)));
 }
 
-static void test_square_root_of_the_core_is_correctly_rounded(void) {
+static void test_square_root_of_the_core_is_correctly_rounded(void)
+{
     for (int i = 0; i < 100000; i++) {
         const mct_real x = (mct_real)(random_number() + 1.0);
 #if MCT_REAL_IS_FLOAT
@@ -85,7 +102,8 @@ static void test_square_root_of_the_core_is_correctly_rounded(void) {
     }
 }
 
-static void test_products_and_transposes_take_any_shape(void) {
+static void test_products_and_transposes_take_any_shape(void)
+{
     const double a[] = {1, 2, 3, 4, 5, 6};   /* 2 x 3 */
     const double b[] = {1, 0, -1, 2, 3, -3}; /* 3 x 2 */
     const double wanted[] = {8, -5, 17, -8};
@@ -99,7 +117,8 @@ static void test_products_and_transposes_take_any_shape(void) {
 }
 
 /* Backward stable: the residual is some n roundings of |a| |x|, whatever the condition. */
-static void test_elimination_leaves_a_residual_of_rounding(void) {
+static void test_elimination_leaves_a_residual_of_rounding(void)
+{
     for (int n = 1; n <= MCT_MATRIX_MAX; n++) {
         for (int trial = 0; trial < 50; trial++) {
             double a[MCT_MATRIX_MAX * MCT_MATRIX_MAX];
@@ -128,7 +147,8 @@ static void test_elimination_leaves_a_residual_of_rounding(void) {
     }
 }
 
-static void test_inverse_times_matrix_is_one(void) {
+static void test_inverse_times_matrix_is_one(void)
+{
     const double a[] = {0, 2, 0, 1, 0, 0, 0, 0, -4};
     const double wanted[] = {0, 1, 0, 0.5, 0, 0, 0, 0, -0.25};
     double inverse[9];
@@ -136,7 +156,8 @@ static void test_inverse_times_matrix_is_one(void) {
     TEST_ASSERT_EQUAL_DOUBLE_ARRAY(wanted, inverse, 9);
 }
 
-static void test_units_do_not_make_a_matrix_singular(void) {
+static void test_units_do_not_make_a_matrix_singular(void)
+{
     /* [[2, 1], [1, 1]] with its rows and columns in units of 1e+-20: answers scale, and keep their digits */
     double a[] = {2e20, 1e-20, 1, 1e-40};
     double b[] = {3e20, 2};
@@ -151,7 +172,8 @@ static void test_units_do_not_make_a_matrix_singular(void) {
     TEST_ASSERT_EQUAL_DOUBLE_ARRAY(wanted, c, 3);
 }
 
-static void test_a_singular_matrix_is_reported(void) {
+static void test_a_singular_matrix_is_reported(void)
+{
     double third[] = {1, 2, 3, 4, 5, 6, 7, 8, 9}; /* rank 2, and elimination leaves a pivot of rounding */
     double zero[] = {0, 0, 0, 1};
     double b[3] = {1, 1, 1};
@@ -159,7 +181,8 @@ static void test_a_singular_matrix_is_reported(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_SINGULAR, mct_matrix_solve(2, 1, zero, b));
 }
 
-static void test_bad_matrices_are_refused(void) {
+static void test_bad_matrices_are_refused(void)
+{
     double a[] = {1, 0, 0, not_a_number};
     double b[4] = {1, 1, 1, 1};
     double x[4];
@@ -181,7 +204,8 @@ static void test_bad_matrices_are_refused(void) {
 }
 
 /* Each doubling adds a rounding or two, and there are log2(norm) + 1 of them. */
-static void test_exponential_of_a_number_agrees_with_expm1(void) {
+static void test_exponential_of_a_number_agrees_with_expm1(void)
+{
     double worst = 0.0;
     for (double size = 1e-300; size < 800.0; size *= 1.7) {
         for (int sign = -1; sign <= 1; sign += 2) {
@@ -200,7 +224,8 @@ static void test_exponential_of_a_number_agrees_with_expm1(void) {
     TEST_ASSERT_TRUE(worst < 4.0);
 }
 
-static void test_stiff_parts_end_at_minus_one_beside_slow_ones(void) {
+static void test_stiff_parts_end_at_minus_one_beside_slow_ones(void)
+{
     /* rates 1e5, 1 and 1e-9 over a tick of 1 ms: no entry suffers from its neighbours */
     const double a[9] = {-1e5 * 1e-3, 0, 0, 0, -1e-3, 0, 0, 0, -1e-12};
     double x[9];
@@ -220,7 +245,8 @@ static void test_stiff_parts_end_at_minus_one_beside_slow_ones(void) {
  * A motor of L/R = 10 us on a wheel over 1 ms: (speed, current), where the slow rate, 1/200 s, comes from
  * the coupling alone. Reference: the two modes in long double.
  */
-static void test_tiny_entries_survive_a_stiff_coupling(void) {
+static void test_tiny_entries_survive_a_stiff_coupling(void)
+{
     const double h = 1e-3;
     const double coupling = 500.0;
     const double a[4] = {0, h * coupling, -h * 1.0, -h * 1e5};
@@ -240,7 +266,8 @@ static void test_tiny_entries_survive_a_stiff_coupling(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, (double)(x[1] / wanted_mixed - 1));
 }
 
-static void test_a_rotation_generator_gives_sine_and_cosine(void) {
+static void test_a_rotation_generator_gives_sine_and_cosine(void)
+{
     for (double angle = 1e-6; angle < 20.0; angle *= 3.3) {
         const double a[4] = {0, -angle, angle, 0};
         double x[4];
@@ -254,7 +281,8 @@ static void test_a_rotation_generator_gives_sine_and_cosine(void) {
     }
 }
 
-static void test_a_chain_gives_the_powers_of_time(void) {
+static void test_a_chain_gives_the_powers_of_time(void)
+{
     /* nilpotent: e^a - 1 = a + a^2 / 2 + a^3 / 6 exactly, with entries down to 1e-9 / 6 */
     const double h = 1e-3;
     const double a[16] = {0, h, 0, 0, 0, 0, h, 0, 0, 0, 0, h, 0, 0, 0, 0};
@@ -266,7 +294,8 @@ static void test_a_chain_gives_the_powers_of_time(void) {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, x[0]);
 }
 
-static void test_two_halves_make_a_whole(void) {
+static void test_two_halves_make_a_whole(void)
+{
     /* e^a - 1 = 2 x + x x of the half, for full matrices of the largest size */
     enum { N = MCT_MATRIX_MAX };
     double a[N * N];
@@ -287,7 +316,8 @@ static void test_two_halves_make_a_whole(void) {
     }
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_square_root_is_correctly_rounded);
     RUN_TEST(test_square_root_is_exact_for_squares_and_rounds_their_neighbours);

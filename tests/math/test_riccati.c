@@ -10,10 +10,12 @@
 #define N MCT_RICCATI_MAX_STATES
 #define M MCT_RICCATI_MAX_INPUTS
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 typedef struct {
@@ -25,7 +27,8 @@ typedef struct {
     double R[M * M];
 } problem;
 
-static double largest(int count, const double *a) {
+static double largest(int count, const double *a)
+{
     double result = 0.0;
     for (int i = 0; i < count; i++) {
         result = fmax(result, fabs(a[i]));
@@ -34,19 +37,22 @@ static double largest(int count, const double *a) {
 }
 
 /* closed = A - B K */
-static void closed_loop(const problem *self, const double *K, double *closed) {
+static void closed_loop(const problem *self, const double *K, double *closed)
+{
     mct_matrix_multiply(self->n, self->m, self->n, self->B, K, closed);
     for (int i = 0; i < self->n * self->n; i++) {
         closed[i] = self->A[i] - closed[i];
     }
 }
 
-static mct_status solve(const problem *self, double *P, double *K) {
+static mct_status solve(const problem *self, double *P, double *K)
+{
     return mct_discrete_riccati(self->n, self->m, self->A, self->B, self->Q, self->R, P, K);
 }
 
 /* Largest entry of Q + A' P (A - B K) - P, over that of P: the equation itself, with K put in. */
-static double residual(const problem *self, const double *P, const double *K) {
+static double residual(const problem *self, const double *P, const double *K)
+{
     const int n = self->n;
     double closed[N * N];
     double At[N * N];
@@ -63,7 +69,8 @@ static double residual(const problem *self, const double *P, const double *K) {
 }
 
 /* The closed loop decays: its 2^20-th power vanishes. */
-static bool is_stable(const problem *self, const double *K) {
+static bool is_stable(const problem *self, const double *K)
+{
     const int n = self->n;
     double power[N * N];
     closed_loop(self, K, power);
@@ -76,7 +83,8 @@ static bool is_stable(const problem *self, const double *K) {
 }
 
 /* The tolerance is that of rounding in A' P A, with the few digits that a badly scaled P costs. */
-static void assert_solved(const char *name, const problem *self, double *P, double *K) {
+static void assert_solved(const char *name, const problem *self, double *P, double *K)
+{
     TEST_ASSERT_EQUAL_INT(MCT_OK, solve(self, P, K));
     const double error = residual(self, P, K);
     printf("mctau: riccati, %s: relative residual %.1e\n", name, error);
@@ -90,7 +98,8 @@ static void assert_solved(const char *name, const problem *self, double *P, doub
     }
 }
 
-static void test_scalar_equation_has_its_golden_solution(void) {
+static void test_scalar_equation_has_its_golden_solution(void)
+{
     /* p = p - p^2 / (1 + p) + 1, so p^2 = p + 1 */
     const problem scalar = {1, 1, {1}, {1}, {1}, {1}};
     double P[1];
@@ -101,7 +110,8 @@ static void test_scalar_equation_has_its_golden_solution(void) {
     TEST_ASSERT_DOUBLE_WITHIN(4 * DBL_EPSILON, golden / (1 + golden), K[0]);
 }
 
-static void test_expensive_control_mirrors_an_unstable_pole(void) {
+static void test_expensive_control_mirrors_an_unstable_pole(void)
+{
     /* with Q = 0 the cheapest gain that stabilises a = 2 puts the pole at 1/2: p = 3, k = 3/2 */
     const problem scalar = {1, 1, {2}, {1}, {0}, {1}};
     double P[1];
@@ -115,7 +125,8 @@ static void test_expensive_control_mirrors_an_unstable_pole(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-11, 1.5, K[0]);
 }
 
-static void test_double_integrator_at_a_kilohertz_is_solved(void) {
+static void test_double_integrator_at_a_kilohertz_is_solved(void)
+{
     const double h = 1e-3;
     const problem mass = {2, 1, {1, h, 0, 1}, {h * h / 2, h}, {1, 0, 0, 0.1}, {1e-4}};
     double P[4];
@@ -126,7 +137,8 @@ static void test_double_integrator_at_a_kilohertz_is_solved(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1.5, sqrt(1000.0 + 200.0), K[1]);
 }
 
-static void test_upright_reaction_wheel_with_motor_is_solved(void) {
+static void test_upright_reaction_wheel_with_motor_is_solved(void)
+{
     /* arm angle, arm rate, wheel rate; e^(A h) - 1 by the library itself */
     const double h = 1e-3;
     double generator[16] = {0, 1, 0, 0, 77.0, -0.05, 0.02, -0.5, -77.0, 0.05, -2.5, 90.0, 0, 0, 0, 0};
@@ -148,7 +160,8 @@ static void test_upright_reaction_wheel_with_motor_is_solved(void) {
     assert_solved("upright reaction wheel, 1 kHz", &wheel, P, K);
 }
 
-static void test_two_inputs_and_eight_states_are_solved(void) {
+static void test_two_inputs_and_eight_states_are_solved(void)
+{
     /* a chain of unstable cells, driven at both ends */
     problem chain = {8, 2, {0}, {0}, {0}, {1, 0.2, 0.2, 2}};
     for (int i = 0; i < 8; i++) {
@@ -166,13 +179,15 @@ static void test_two_inputs_and_eight_states_are_solved(void) {
     assert_solved("eight states, two inputs", &chain, P, K);
 }
 
-static void test_observer_is_the_transposed_regulator(void) {
+static void test_observer_is_the_transposed_regulator(void)
+{
     /* a position measured with variance r, driven by acceleration noise: Kalata's relation of the gains */
     const double h = 1e-2;
     const double q = 4.0;
     const double r = 1e-3;
-    const problem filter = {2, 1, {1, 0, h, 1}, {1, 0},
-                            {q * h * h * h * h / 4, q * h * h * h / 2, q * h * h * h / 2, q * h * h}, {r}};
+    const problem filter = {
+        2,  1, {1, 0, h, 1}, {1, 0}, {q * h * h * h * h / 4, q * h * h * h / 2, q * h * h * h / 2, q * h * h},
+        {r}};
     double P[4];
     double K[2];
     assert_solved("tracking filter", &filter, P, K);
@@ -182,7 +197,8 @@ static void test_observer_is_the_transposed_regulator(void) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, index * index, beta * beta / (1 - alpha_beta));
 }
 
-static void test_what_cannot_be_stabilised_is_reported(void) {
+static void test_what_cannot_be_stabilised_is_reported(void)
+{
     const problem unreachable = {2, 1, {1.1, 0, 0, 0.5}, {0, 1}, {1, 0, 0, 1}, {1}};
     const problem unseen = {2, 1, {1.0, 0, 0, 0.5}, {1, 1}, {0, 0, 0, 1}, {1}};
     double P[4];
@@ -191,7 +207,8 @@ static void test_what_cannot_be_stabilised_is_reported(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_NO_CONVERGENCE, solve(&unseen, P, K));
 }
 
-static void test_bad_problems_are_refused(void) {
+static void test_bad_problems_are_refused(void)
+{
     problem bad = {1, 1, {1}, {1}, {1}, {0}};
     double P[1];
     double K[1];
@@ -207,7 +224,8 @@ static void test_bad_problems_are_refused(void) {
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_BOUND, solve(&bad, P, K));
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_scalar_equation_has_its_golden_solution);
     RUN_TEST(test_expensive_control_mirrors_an_unstable_pole);

@@ -7,14 +7,17 @@
 
 #define HALF_PI 1.570796326794896619231321691639751442L
 
-void setUp(void) {
+void setUp(void)
+{
 }
 
-void tearDown(void) {
+void tearDown(void)
+{
 }
 
 /* First to less than an eighth of a turn, which is exact: the reference needs its digits near zeros, too. */
-static void reference_turn32(int32_t angle, long double *s, long double *c) {
+static void reference_turn32(int32_t angle, long double *s, long double *c)
+{
     const int64_t quadrant = ((int64_t)angle + INT64_C(0xa0000000)) / INT64_C(0x40000000) - 2;
     const int64_t rest = angle - quadrant * INT64_C(0x40000000);
     const long double x = (long double)rest * (HALF_PI / 1073741824.0L);
@@ -27,7 +30,8 @@ static void reference_turn32(int32_t angle, long double *s, long double *c) {
 static uint64_t random_state = 1;
 
 /* xorshift64*: the same numbers on every machine */
-static double random_within(double bound) {
+static double random_within(double bound)
+{
     random_state ^= random_state >> 12;
     random_state ^= random_state << 25;
     random_state ^= random_state >> 27;
@@ -36,27 +40,31 @@ static double random_within(double bound) {
 }
 
 /* Error in units in the last place of a format with that many digits. */
-static double ulps(long double got, long double wanted, int digits) {
+static double ulps(long double got, long double wanted, int digits)
+{
     int exponent;
     frexpl(wanted, &exponent);
     return (double)(fabsl(got - wanted) / ldexpl(1.0L, exponent - digits));
 }
 
-static double error_f64(double x) {
+static double error_f64(double x)
+{
     double s;
     double c;
     mct_sincos_f64(x, &s, &c);
     return fmax(ulps(s, sinl(x), DBL_MANT_DIG), ulps(c, cosl(x), DBL_MANT_DIG));
 }
 
-static double error_f32(float x) {
+static double error_f32(float x)
+{
     float s;
     float c;
     mct_sincos_f32(x, &s, &c);
     return fmax(ulps(s, sin((double)x), FLT_MANT_DIG), ulps(c, cos((double)x), FLT_MANT_DIG));
 }
 
-static double worst_random_f64(double bound, int count) {
+static double worst_random_f64(double bound, int count)
+{
     double worst = 0.0;
     for (int i = 0; i < count; i++) {
         worst = fmax(worst, error_f64(random_within(bound)));
@@ -65,7 +73,8 @@ static double worst_random_f64(double bound, int count) {
 }
 
 /* Every `stride`-th float between two positive ones: steps of the last place are steps of the bits. */
-static double worst_f32(float from, float to, uint32_t stride) {
+static double worst_f32(float from, float to, uint32_t stride)
+{
     double worst = 0.0;
     uint32_t bits;
     for (memcpy(&bits, &from, sizeof bits);; bits += stride) {
@@ -79,7 +88,8 @@ static double worst_f32(float from, float to, uint32_t stride) {
 }
 
 /* The stated errors are the largest of all floats and of 9e7 doubles; this repeats them on a sample. */
-static void test_double_errs_by_less_than_the_stated_ulps(void) {
+static void test_double_errs_by_less_than_the_stated_ulps(void)
+{
     const double pi = worst_random_f64(3.1415926535897931, 200000);
     const double thousands = worst_random_f64(8192.0, 200000);
     const double million = worst_random_f64(1e6, 200000);
@@ -89,7 +99,8 @@ static void test_double_errs_by_less_than_the_stated_ulps(void) {
     TEST_ASSERT_TRUE(million < 0.83);
 }
 
-static void test_float_errs_by_less_than_the_stated_ulps(void) {
+static void test_float_errs_by_less_than_the_stated_ulps(void)
+{
     const double pi = worst_f32(1e-4f, 3.1415927f, 211);
     const double thousands = worst_f32(3.1415927f, 8192.0f, 211);
     printf("mctau: sincos float, max ulp: %.3f (pi), %.3f (8192)\n", pi, thousands);
@@ -97,7 +108,8 @@ static void test_float_errs_by_less_than_the_stated_ulps(void) {
     TEST_ASSERT_TRUE(thousands < 0.86);
 }
 
-static void test_the_angles_nearest_to_a_zero_lose_no_digits(void) {
+static void test_the_angles_nearest_to_a_zero_lose_no_digits(void)
+{
     double worst = 0.0;
     for (int n = 1; n < 636619; n += n < 10000 ? 1 : 97) {
         worst = fmax(worst, error_f64((double)(n * HALF_PI)));
@@ -112,7 +124,8 @@ static void test_the_angles_nearest_to_a_zero_lose_no_digits(void) {
 }
 
 /* One unit of the argument and one of the result, up to where the result becomes NaN. */
-static void test_beyond_its_range_the_error_is_at_most_one_unit_of_the_angle(void) {
+static void test_beyond_its_range_the_error_is_at_most_one_unit_of_the_angle(void)
+{
     double worst = 0.0;
     for (double bound = 1e6; bound < 3e15; bound *= 1.5) {
         for (int i = 0; i < 2000; i++) {
@@ -139,7 +152,8 @@ static void test_beyond_its_range_the_error_is_at_most_one_unit_of_the_angle(voi
     TEST_ASSERT_TRUE(worst_float <= 1.0);
 }
 
-static void test_no_angle_without_a_meaning_has_a_sine(void) {
+static void test_no_angle_without_a_meaning_has_a_sine(void)
+{
     const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 3.6e15, -3.6e15, 1e300, DBL_MAX};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         double s;
@@ -156,7 +170,8 @@ static void test_no_angle_without_a_meaning_has_a_sine(void) {
     }
 }
 
-static void test_sine_is_odd_and_cosine_is_even_to_the_bit(void) {
+static void test_sine_is_odd_and_cosine_is_even_to_the_bit(void)
+{
     for (int i = 0; i < 20000; i++) {
         const double x = random_within(1e5);
         double s[2];
@@ -172,7 +187,8 @@ static void test_sine_is_odd_and_cosine_is_even_to_the_bit(void) {
     }
 }
 
-static void test_small_angles_are_their_own_sine(void) {
+static void test_small_angles_are_their_own_sine(void)
+{
     for (double x = 1e-8; x > DBL_MIN; x *= 0.1) {
         double s;
         double c;
@@ -188,7 +204,8 @@ static void test_small_angles_are_their_own_sine(void) {
 }
 
 /* An error below one ulp lets a neighbour fall back by one, also across a seam at an odd multiple of pi/4. */
-static void test_sine_rises_from_quarter_to_quarter_turn_without_a_step_back(void) {
+static void test_sine_rises_from_quarter_to_quarter_turn_without_a_step_back(void)
+{
     float before = -1.0f;
     for (int i = -400000; i <= 400000; i++) {
         float s;
@@ -217,7 +234,8 @@ static void test_sine_rises_from_quarter_to_quarter_turn_without_a_step_back(voi
     }
 }
 
-static void test_binary_angle_errs_by_less_than_the_stated_ulps(void) {
+static void test_binary_angle_errs_by_less_than_the_stated_ulps(void)
+{
     double worst = 0.0;
     double worst_double = 0.0;
     for (int64_t i = INT32_MIN; i <= INT32_MAX; i += 6007) {
@@ -240,7 +258,8 @@ static void test_binary_angle_errs_by_less_than_the_stated_ulps(void) {
     TEST_ASSERT_TRUE(worst_double < 0.83);
 }
 
-static void test_every_quarter_of_a_binary_turn_is_exact(void) {
+static void test_every_quarter_of_a_binary_turn_is_exact(void)
+{
     static const int32_t angle[] = {0, 0x40000000, INT32_MIN, -0x40000000};
     static const int sine[] = {0, 1, 0, -1};
     static const int cosine[] = {1, 0, -1, 0};
@@ -256,7 +275,8 @@ static void test_every_quarter_of_a_binary_turn_is_exact(void) {
     }
 }
 
-static void test_smallest_binary_angles_keep_all_their_digits(void) {
+static void test_smallest_binary_angles_keep_all_their_digits(void)
+{
     for (int32_t i = -70000; i <= 70000; i++) {
         long double wanted_s;
         long double wanted_c;
@@ -270,7 +290,8 @@ static void test_smallest_binary_angles_keep_all_their_digits(void) {
     }
 }
 
-static void test_the_core_takes_its_own_precision(void) {
+static void test_the_core_takes_its_own_precision(void)
+{
     mct_real s[2];
     mct_real c[2];
     mct_sincos(MCT_R(0.7), &s[0], &c[0]);
@@ -291,7 +312,8 @@ static void test_the_core_takes_its_own_precision(void) {
     }
 }
 
-int main(void) {
+int main(void)
+{
     if (LDBL_MANT_DIG < 64) {
         printf("skipped: long double is no wider than double here, so there is no reference\n");
         return 77;

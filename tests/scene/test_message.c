@@ -14,7 +14,9 @@ void setUp(void)
     mct_message_clear(&message);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static void test_cleared_message_is_empty(void)
 {

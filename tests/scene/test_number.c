@@ -16,7 +16,9 @@ void setUp(void)
     state = 88172645463325252u;
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 /* xorshift64 */
 static uint64_t random_bits(void)

@@ -11,7 +11,7 @@
 #include "scene/tables.h"
 #include "unity.h"
 
-#define CART "[scene]\nsystem = \"cart_pole\"\n"
+#define CART  "[scene]\nsystem = \"cart_pole\"\n"
 #define WHEEL "[scene]\nsystem = \"reaction_wheel\"\n"
 
 static mct_scene scene;
@@ -23,7 +23,9 @@ void setUp(void)
     mct_message_clear(&why);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static mct_status read_with(const char *text, const char *first, const char *second)
 {

@@ -16,7 +16,9 @@ void setUp(void)
     mct_message_clear(&why);
 }
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
 static mct_status read_text(const char *text)
 {

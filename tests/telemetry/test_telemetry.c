@@ -16,10 +16,10 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "telemetry/logged_run.h"
 #include "mctau_health_t.h"
 #include "mctau_scene_t.h"
 #include "mctau_tick_t.h"
+#include "telemetry/logged_run.h"
 
 static logged_run run;
 static char path[64];

@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "hal/sim/sim.h"
-#include "measure.h"
 #include "mctau/loop.h"
+#include "measure.h"
 
 enum { INPUTS = 64, SWING_UP_TICKS = 512, SETTLE_TICKS = 20000 };
 

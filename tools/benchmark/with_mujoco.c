@@ -14,11 +14,11 @@
 
 #include <mujoco/mujoco.h>
 
-#include "measure.h"
 #include "mctau/plant.h"
+#include "measure.h"
 
 #define INERTIA 1e-14
-#define START 2.0 /* [rad] */
+#define START   2.0 /* [rad] */
 enum { COMPARED_STEPS = 10000, HOLD = 256 };
 
 /* Newtons, a square wave of 1 N. */
