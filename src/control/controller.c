@@ -56,7 +56,7 @@ static mct_status balance_gains(const mct_scene *scene, const sampled_model *mod
     const int n = model->states;
     double Q[MAX_MODEL * MAX_MODEL] = {0};
     double P[MAX_MODEL * MAX_MODEL];
-    double K[MAX_MODEL];
+    double K[MAX_MODEL] = {0};
     for (int i = 0; i < n; i++) {
         const double deviation = scene->weights[i];
         Q[i * n + i] = 1 / (deviation * deviation);

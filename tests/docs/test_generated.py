@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 
@@ -38,9 +39,17 @@ def test_every_system_has_its_page_and_picture(source, mctau):
     for system in json.loads(mctau("list", "--json").stdout)["systems"]:
         page = source / "docs" / "systems" / f"{system['name']}.md"
         assert f"generated: parameters {system['name']}" in page.read_text()
-        assert (source / "docs" / "images" / f"{system['name']}.svg").stat().st_size < 200_000
+        assert (source / "docs" / "images" / f"{system['name']}.svg").stat().st_size < 100_000
 
 
 def test_the_program_that_is_missing_is_said(source, tmp_path):
     done = generate(source, tmp_path, "--check")
     assert done.returncode == 1 and "build it first" in done.stderr
+
+
+def test_the_environment_that_is_missing_is_said(source, build, mctau, tmp_path):
+    (tmp_path / "docs").mkdir()
+    shutil.copy(source / "docs" / "generate", tmp_path / "docs")  # a root without build/venv
+    done = generate(tmp_path, build)
+    assert done.returncode == 1 and "build/venv" in done.stderr and "tools/setup" in done.stderr
+    assert len(done.stderr.splitlines()) == 1

@@ -8,10 +8,12 @@ import shlex
 import subprocess
 import sys
 import types
+import xml.etree.ElementTree
 
 import pytest
 
 LIMIT = 1_500_000  # [bytes] of a page
+PICTURE_LIMIT = 100_000  # [bytes]
 WITHOUT_END = {"meta", "br", "img", "link", "hr", "input"}
 
 
@@ -43,9 +45,9 @@ class Page(html.parser.HTMLParser):
 
 @pytest.fixture
 def reported(source, build, mctau, tmp_path):
-    """reported(scene, sets...) runs a scene and makes its report."""
+    """reported(scene, sets...) runs a scene and makes its report, or its picture."""
 
-    def make(scene, *overrides, change=lambda files: None, options=()):
+    def make(scene, *overrides, tool="report.py", change=lambda files: None, options=()):
         files = types.SimpleNamespace(
             csv=tmp_path / "run.csv",
             json=tmp_path / "run.json",
@@ -59,7 +61,7 @@ def reported(source, build, mctau, tmp_path):
         done = subprocess.run(
             [
                 sys.executable,
-                source / "tools/report/report.py",
+                source / "tools/report" / tool,
                 "--mctau",
                 build / "mctau",
                 "--csv",
@@ -123,10 +125,30 @@ def test_the_plots_are_the_same_bytes_again_in_the_colours_of_the_page(reported)
     assert "voltage [V]" in runs[0].page.texts, "text has become curves"
 
 
-def test_without_matplotlib_a_sentence_says_where_it_is(source):
+@pytest.mark.parametrize("scene", ["reaction_wheel.toml", "cart_pole.toml"])
+def test_a_picture_stands_alone_in_the_colours_of_the_page(reported, scene):
+    pictures = [reported(scene, tool="picture.py") for _ in range(2)]
+    text = pictures[0].text
+    assert pictures[0].done.returncode == 0, pictures[0].done.stderr
+    assert text == pictures[1].text and len(text.encode()) < PICTURE_LIMIT
+    xml.etree.ElementTree.fromstring(text)
+    style, drawn = re.fullmatch(r"<svg[^>]*><style>(.*?)</style>(.*)", text, re.DOTALL).groups()
+    assert not re.search(r"#[0-9a-f]{6}\b", drawn), "a colour that does not follow light and dark"
+    light, dark = style.split("@media (prefers-color-scheme: dark)")
+    used = set(re.findall(r"var\(--(\w+)\)", text))
+    for colours in (light, dark):
+        assert {"limit", "swing_up", "balance"} <= used <= set(re.findall(r"--(\w+):", colours))
+    names = re.findall(r' id="([^"]*)"', drawn)
+    assert len(names) == len(set(names)), "two things of one name"
+    assert {"voltage [V]", "supply"} <= set(pictures[0].page.texts), "text has become curves"
+    assert "body" not in style, "rules of the page alone"
+
+
+@pytest.mark.parametrize("tool", ["report.py", "picture.py"])
+def test_without_matplotlib_a_sentence_says_where_it_is(source, tool):
     # -S: without the packages of the environment
-    report = [sys.executable, "-S", source / "tools/report/report.py"]
-    done = subprocess.run(report, capture_output=True, text=True, timeout=60)
+    command = [sys.executable, "-S", source / "tools/report" / tool]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 3 and "matplotlib" in done.stderr and "tools/setup" in done.stderr
     assert len(done.stderr.splitlines()) == 1
 

@@ -72,6 +72,9 @@ static void test_a_slow_consumer_gets_records_in_order_and_the_rest_is_counted(v
     bool whole = true;
     const struct timespec pause = {.tv_nsec = 100000};
     TEST_ASSERT_EQUAL_INT(0, pthread_create(&producer, NULL, push_all, &run.ring));
+    while (__atomic_load_n(&run.ring.dropped, __ATOMIC_ACQUIRE) == 0) {
+        nanosleep(&pause, NULL); /* slow enough that some are lost, however slow the producer */
+    }
     for (bool last = false; !last;) {
         last = __atomic_load_n(&run.ring.head, __ATOMIC_ACQUIRE) +
                    __atomic_load_n(&run.ring.dropped, __ATOMIC_ACQUIRE) ==

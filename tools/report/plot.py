@@ -8,11 +8,16 @@ import html
 import io
 import logging
 import re
+import sys
 
-import matplotlib
-from matplotlib.figure import Figure
+from run_data import INPUT_OUTPUT, decimated, words
 
-from run_data import decimated
+try:
+    import matplotlib
+    from matplotlib.figure import Figure
+except ModuleNotFoundError as missing:
+    print(f"tools/report: {missing}; tools/setup installs it into build/venv", file=sys.stderr)
+    sys.exit(INPUT_OUTPUT)
 
 WIDTHS = {"wide": 720, "narrow": 310}  # [px] of the drawing
 HEIGHT = 118  # [px] of the axes
@@ -27,8 +32,9 @@ LINES = {
     "estimate": {"color": COLOURS["estimate"], "linewidth": 3, "alpha": 0.5},
     "wanted": {"color": COLOURS["soft"], "linewidth": 0.8},
 }
-LEFT_OUT = re.compile(  # prolog, metadata, a style for the whole page, ids that nothing refers to, the font
-    r'^.*?(?=<svg)|<metadata>.*?</metadata>|<style.*?</style>| id="[\w.]+_\d+"|font-family: [^;]*; ',
+LEFT_OUT = re.compile(  # prolog, size, metadata, a style for the whole page, ids without use, the font
+    r'^.*?(?=<svg)| (?:width|height)="[\d.]+pt"|<metadata>.*?</metadata>|<style.*?</style>'
+    r'| id="[\w.]+_\d+"|font-family: [^;]*; ',
     re.DOTALL,
 )
 
@@ -70,16 +76,17 @@ matplotlib.rcParams.update(
 
 
 class Plot:
-    """One panel. Add what is to be seen, then ask for its html(). `options` go to matplotlib's Axes.set."""
+    """One panel. Add what is to be seen, then ask for its html() or one svg(). `options` go to Axes.set."""
 
-    def __init__(self, title, unit, run, **options):
+    def __init__(self, title, unit, run, widths=WIDTHS, **options):
         self.title = f"{title} [{unit}]"
+        self.widths = widths
         self.axes = {}
-        for layout, width in WIDTHS.items():
+        for layout, width in widths.items():
             axes = self.axes[layout] = Figure().add_axes((0, 0, 1, 1))
             axes.locator_params(steps=(1, 2, 5, 10))
             axes.locator_params(axis="x", nbins=width // 70)
-            axes.set(xlim=(0, run.duration), **options)
+            axes.set(**{"xlim": (0, run.duration)} | options)
             axes.xaxis.set_major_formatter("{x:g} s")
             axes.yaxis.set_major_formatter("{x:g}")
             for span in run.modes:
@@ -104,8 +111,8 @@ class Plot:
         """A curve; `wraps`: a jump of more than this is no motion, and not drawn."""
         for layout, axes in self.axes.items():
             points = []
-            columns = round(COLUMNS * WIDTHS[layout])
-            for time, value in decimated(times, values, times[0], times[-1] + 1e-9, columns):
+            columns = round(COLUMNS * self.widths[layout])
+            for time, value in decimated(times, values, *axes.get_xlim(), columns):
                 if wraps is not None and points and abs(value - points[-1][1]) > wraps:
                     points.append((time, float("nan")))
                 points.append((time, value))
@@ -126,10 +133,11 @@ class Plot:
             axes.axhspan(low, high, color=COLOURS[kind], linewidth=0, zorder=0.1, label=label)
 
     def html(self):
-        return f'<figure class="plot">{"".join(map(self._svg, self.axes))}</figure>'
+        return f'<figure class="plot">{"".join(map(self.svg, self.axes))}</figure>'
 
-    def _svg(self, layout):
-        axes, width = self.axes[layout], WIDTHS[layout]
+    def svg(self, layout):
+        """One drawing; it has a viewBox and no size."""
+        axes, width = self.axes[layout], self.widths[layout]
         low, high = axes.get_ylim()
         if low < 0 < high:
             axes.axhline(0, color=COLOURS["soft"], linewidth=0.6, zorder=0.6)
@@ -154,3 +162,27 @@ class Plot:
             svg = svg.replace(colour, f"var(--{name})")
         label = html.escape(f"{self.title} over time")
         return svg.replace("<svg", f'<svg class="{layout}" role="img" aria-label="{label}"', 1)
+
+
+def angle(run, **options):
+    range_ = {"ylim": (-200, 200), "yticks": range(-180, 181, 90)}
+    plot = Plot(words(run.angle_name), "deg from upright", run, **range_, **options)
+    plot.line(run.time, run.degrees, "true", "", wraps=180)
+    return plot
+
+
+def input_(run, **options):
+    """What moves the mechanism, a voltage with its limits or a force."""
+    name, unit = (
+        ("voltage", "V")
+        if run.scene.has_motor
+        else (run.system["input_without_motor"]["name"], run.system["input_without_motor"]["unit"])
+    )
+    plot = Plot(name, unit, run, **options)
+    if run.table["wanted"] != run.table["applied"]:
+        plot.line(run.time, run.table["wanted"], "wanted", "wanted")
+    plot.line(run.time, run.table["applied"], "true", "applied")
+    if run.scene.has_motor and run.scene("effects", "saturation") in (True, "true"):
+        supply = float(run.scene("parameters", "supply_voltage"))
+        plot.levels((-supply, supply), "limit", "supply")
+    return plot

@@ -13,14 +13,9 @@ import shlex
 import sys
 
 import mechanism
+import plot
 import run_data
-from run_data import ROOT
-
-try:
-    from plot import Plot
-except ModuleNotFoundError as missing:
-    print(f"report: {missing}; tools/setup installs it into build/venv", file=sys.stderr)
-    sys.exit(run_data.INPUT_OUTPUT)
+from run_data import ROOT, words
 
 HERE = pathlib.Path(__file__).resolve().parent
 VERDICTS = {
@@ -31,10 +26,6 @@ VERDICTS = {
     "stopped": ("Stopped", "bad"),
     "finished": ("Finished", ""),
 }
-
-
-def words(name):
-    return name.replace("_", " ")
 
 
 def lead(run):
@@ -141,19 +132,17 @@ def plots(run):
     """All panels, in the order in which they are read."""
     time, table = run.time, run.table
     upright = run.result["upright_at"] if run.controlled else None
-    made = []
+    made = [plot.angle(run)]
 
     def panel(title, unit, **options):
-        made.append(Plot(title, unit, run, **options))
+        made.append(plot.Plot(title, unit, run, **options))
         return made[-1]
 
-    def estimated(plot, name):
+    def estimated(panel, name):
         if run.controlled:
-            plot.line(time, table[f"{name}_estimate"], "estimate", "estimated")
-        plot.line(time, table[name], "true", "true" if run.controlled else "")
+            panel.line(time, table[f"{name}_estimate"], "estimate", "estimated")
+        panel.line(time, table[name], "true", "true" if run.controlled else "")
 
-    angle = panel(words(run.angle_name), "deg from upright", ylim=(-200, 200), yticks=range(-180, 181, 90))
-    angle.line(time, run.degrees, "true", "", wraps=180)
     if upright is not None and run.duration - upright > 0.5:
         limit = 1.25 * run_data.UPRIGHT
         near = panel(f"{words(run.angle_name)}, near upright", "deg", ylim=(-limit, limit))
@@ -162,18 +151,7 @@ def plots(run):
         near.line(time, estimate, "estimate", "estimated", wraps=180)
         near.line(time, run.degrees, "true", "true", wraps=180)
     if any(table["applied"]):
-        name, unit = (
-            ("voltage", "V")
-            if run.scene.has_motor
-            else (run.system["input_without_motor"]["name"], run.system["input_without_motor"]["unit"])
-        )
-        input_ = panel(name, unit)
-        if table["wanted"] != table["applied"]:
-            input_.line(time, table["wanted"], "wanted", "wanted")
-        input_.line(time, table["applied"], "true", "applied")
-        if run.scene.has_motor and run.scene("effects", "saturation") in (True, "true"):
-            supply = float(run.scene("parameters", "supply_voltage"))
-            input_.levels((-supply, supply), "limit", "supply")
+        made.append(plot.input_(run))
     for coordinate in run.system["coordinates"]:
         name, rate = coordinate["name"], coordinate["rate"]["name"]
         if not coordinate["is_angle"]:
@@ -244,7 +222,7 @@ def page(run):
         "</dd></div>"
         for what, value, unit in figures(run)
     )
-    panels = "".join(plot.html() for plot in plots(run))
+    panels = "".join(panel.html() for panel in plots(run))
     sets = "".join(f"\n# from the command line: {override}" for override in run.scene.overrides)
     version = run.command.text("--version")
     varied = (

@@ -252,6 +252,10 @@ def first_faults(times, faults):
     return sorted((time, name) for name, time in seen.items())
 
 
+def words(name):
+    return name.replace("_", " ")
+
+
 def folded(degrees):
     """Within -180 to 180."""
     return (degrees + 180) % 360 - 180
