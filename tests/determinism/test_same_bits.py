@@ -1,6 +1,8 @@
 """The same run gives the same bits with every compiler and optimisation, and those are the committed ones."""
 
 import os
+import re
+import subprocess
 
 import pytest
 from checks import symbols
@@ -60,3 +62,14 @@ def test_no_build_of_core_and_hal_has_mutable_data_or_asks_for_heap(built, confi
         files = [file for room in ("src", "hal") for file in built.objects(configuration, precision, room)]
         assert not symbols.mutable(files)
         assert not symbols.asked_for(files, symbols.HEAP)
+
+
+@pytest.mark.parametrize("configuration", builds.CONFIGURATIONS, ids=builds.name_of)
+def test_no_build_fuses_a_product_into_a_sum(built, configuration):
+    """-ffp-contract=off forbids it, but gcc's vectoriser of straight code does not always listen."""
+    need(configuration)
+    for precision in builds.PRECISIONS:
+        files = [file for room in ("src", "hal") for file in built.objects(configuration, precision, room)]
+        code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", *files], capture_output=True, text=True,
+                              check=True).stdout
+        assert not set(re.findall(r"\bv?f[n]?m(?:add|sub)\w*", code))
