@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "mctau/mix.h"
+
 #define TURN 6.283185307179586476925
 
 mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why)
@@ -34,13 +36,10 @@ mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why)
     return MCT_OK;
 }
 
-/* A hash of its arguments, evenly spread (splitmix64): noise depends on seed, tick and encoder alone. */
+/* Noise depends on seed, tick and encoder alone. */
 static uint64_t hash(uint64_t seed, uint64_t tick, uint64_t encoder)
 {
-    uint64_t z = (seed << 40) + tick * 4 + encoder + UINT64_C(0x9E3779B97F4A7C15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return z ^ (z >> 31);
+    return mct_mix((seed << 40) + tick * 4 + encoder + MCT_MIX_STEP);
 }
 
 /* Nearly normal, standard deviation 1: the sum of four uniform numbers of 16 bits. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "mctau/mix.h"
 #include "tables.h"
 #include "text.h"
 #include "toml.h"
@@ -595,21 +596,11 @@ static bool is_certain(const mct_field *parameter)
     return false;
 }
 
-/* The finaliser of splitmix64 (Steele, Lea, Flood 2014): every bit of the argument moves every bit of the
- * result. */
-static uint64_t mix(uint64_t z)
-{
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-}
-
 /* Uniform in [-1, 1), a function of the two numbers alone. */
 static double uniform(int32_t seed, int index)
 {
-    const uint64_t golden = 0x9E3779B97F4A7C15u;
-    const uint64_t stream = mix((uint64_t)(uint32_t)seed + golden);
-    const uint64_t bits = mix(stream + golden * ((uint64_t)index + 1));
+    const uint64_t stream = mct_mix((uint64_t)(uint32_t)seed + MCT_MIX_STEP);
+    const uint64_t bits = mct_mix(stream + MCT_MIX_STEP * ((uint64_t)index + 1));
     return (double)(int64_t)(bits >> 11) * 0x1p-52 - 1; /* 53 bits: exact */
 }
 
