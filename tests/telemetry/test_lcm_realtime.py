@@ -67,7 +67,8 @@ pytest.importorskip("mctau.tick_t", reason="the build made no telemetry types fo
 
 
 def in_network(script, *arguments, setup=NETWORK, **options):
-    command = ["unshare", "-rn", "sh", "-c", setup, "sh", "sh", "-c", script, "sh", *map(str, arguments)]
+    user = "-n" if os.geteuid() == 0 else "-rn"  # root needs no user namespace, which a chroot has not got
+    command = ["unshare", user, "sh", "-c", setup, "sh", "sh", "-c", script, "sh", *map(str, arguments)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
