@@ -351,7 +351,7 @@ static mct_status encode_scene(mct_telemetry *self, const char *text)
         .text = copy,
         .override_count = override_count,
         .overrides = overrides,
-        .library = (char *)MCT_VERSION,
+        .release = (char *)MCT_VERSION,
         .system = (char *)system->name,
         .stepper = (char *)mct_steppers[scene->stepper].name,
         .dt = scene->dt,
