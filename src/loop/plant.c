@@ -47,7 +47,8 @@ static void take_turns(mct_state *state, int i)
         }
     }
     const mct_real rest = state->c[i] - sign * (mct_real)turns * turn_rest;
-    state->turns[i] += x < 0 ? -turns : turns;
+    /* Wraps after 2^31 turns, a year at 60 turns a second, as a counter does. */
+    state->turns[i] = (int32_t)((uint32_t)state->turns[i] + (uint32_t)(x < 0 ? -turns : turns));
     state->x[i] = mct_two_sum(sign * left, rest, &state->c[i]);
 }
 
@@ -93,8 +94,8 @@ void mct_plant_step(mct_plant *plant, mct_real input)
     } else {
         plant->rejected_inputs++;
     }
-    const mct_state before =
-        plant->state; /* in place: a copy of what a kernel has just written waits for its stores */
+    /* In place: copying what a kernel has just written would wait for its stores. */
+    const mct_state before = plant->state;
     plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
     if (is_sane(&plant->state)) {
         for (int i = 0; i < MCT_MAX_COORDINATES; i++) {

@@ -23,7 +23,6 @@ class ReactionWheel(Mechanism):
         self.wheel = min(max(hoop, 0.19 * self.arm), 0.5 * self.arm)  # to be seen, and not to hide the arm
         reach = 1.1 * (self.arm + self.wheel)
         self.box = (-reach, -reach, 2 * reach, 2 * reach)
-        self.unit = self.arm
 
     def tip(self, row):
         angle = self.table["arm_angle"][row]
@@ -64,7 +63,6 @@ class CartPole(Mechanism):
         top = min(min(y for _, y in tips), -margin) - margin
         bottom = max(max(y for _, y in tips), margin) + margin
         self.box = (-reach, top, 2 * reach, bottom - top)
-        self.unit = self.length
 
     def tip(self, row):
         angle = self.table["pole_angle"][row]
@@ -98,12 +96,11 @@ def of(run):
     return {"reaction_wheel": ReactionWheel, "cart_pole": CartPole}[run.name](run)
 
 
-def drawing(mechanism, body, label, extra=""):
+def drawing(mechanism, body, label):
     left, top, width, height = mechanism.box
     return (
-        f'<svg class="mechanism" {extra}role="img" aria-label="{label}" viewBox="{left:.4f} {top:.4f} '
-        f'{width:.4f} {height:.4f}" '
-        f'style="--m:{mechanism.unit:.4f}">{mechanism.still()}{body}</svg>'
+        f'<svg class="mechanism" role="img" aria-label="{label}" viewBox="{left:.4f} {top:.4f} '
+        f'{width:.4f} {height:.4f}">{mechanism.still()}{body}</svg>'
     )
 
 
