@@ -38,31 +38,15 @@ static uint32_t microseconds(int64_t ns)
     return us < 0 ? 0 : us > UINT32_MAX ? UINT32_MAX : (uint32_t)us;
 }
 
-static void account(mct_timing *timing, int64_t late_ns)
-{
-    int bin = 0;
-    timing->latest_us = microseconds(late_ns);
-    for (uint32_t us = timing->latest_us; us > 0 && bin < 31; us >>= 1) {
-        bin++;
-    }
-    timing->lateness[bin]++;
-    if (timing->latest_us > timing->worst_us) {
-        timing->worst_us = timing->latest_us;
-    }
-}
-
 void mct_clock_wait(mct_clock *clock)
 {
     mct_timing *timing = &clock->timing;
     const int64_t done = now_ns();
-    const uint32_t work_us = microseconds(done - clock->woke_ns);
-    if (work_us > timing->worst_work_us) {
-        timing->worst_work_us = work_us;
-    }
+    mct_histogram_add(&timing->work, microseconds(done - clock->woke_ns));
     const int64_t late_ns = done - deadline_ns(clock);
     if (late_ns > 0) {
         const uint64_t missed = (uint64_t)((double)late_ns / clock->period_ns) + 1;
-        timing->missed_ticks += missed;
+        mct_hal_count(&timing->missed_ticks, missed);
         clock->tick += missed;
     }
     const int64_t due_ns = deadline_ns(clock);
@@ -72,6 +56,6 @@ void mct_clock_wait(mct_clock *clock)
         status = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL);
     }
     clock->woke_ns = now_ns();
-    account(timing, clock->woke_ns - due_ns);
+    mct_histogram_add(&timing->lateness, microseconds(clock->woke_ns - due_ns));
     clock->tick++;
 }

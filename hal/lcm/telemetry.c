@@ -25,7 +25,7 @@
 
 enum {
     TICK_SIZE = 128 + 24 * MCT_MAX_COORDINATES + 16 * MCT_MAX_STATES, /* bytes of a tick_t, at most */
-    HEALTH_SIZE = 512 + 8 * (MCT_FAULT_COUNT + MCT_MODE_COUNT),
+    HEALTH_SIZE = 256 + 8 * (4 * (MCT_HISTOGRAM_BINS + 1) + MCT_FAULT_COUNT + MCT_MODE_COUNT + MCT_MAX_COUNTERS),
     EVENT_HEADER = 28,      /* bytes of a log's event before its channel */
     HEALTHS_PER_SCENE = 10, /* the scene is repeated every second */
     STACK_SIZE = 256 * 1024,
@@ -158,6 +158,7 @@ static void send_tick(mct_telemetry *self, const mct_record *record)
         .applied = (double)record->applied,
         .mode = (int32_t)record->mode,
         .faults = (int32_t)record->faults,
+        .rearmed = record->rearmed,
         .late_us = record->late_us,
         .dropped = (int64_t)record->dropped,
         .x = x,
@@ -170,9 +171,22 @@ static void send_tick(mct_telemetry *self, const mct_record *record)
     self->counts.records++;
 }
 
+/* The loop may be adding to it; returns the worst. */
+static int64_t copy_histogram(const mct_histogram *from, int64_t to[MCT_HISTOGRAM_BINS])
+{
+    for (int i = 0; i < MCT_HISTOGRAM_BINS; i++) {
+        to[i] = (int64_t)__atomic_load_n(&from->bins[i], __ATOMIC_RELAXED);
+    }
+    return __atomic_load_n(&from->worst_us, __ATOMIC_RELAXED);
+}
+
 static void send_health(mct_telemetry *self, bool finished)
 {
     const mct_telemetry_health *health = &self->health;
+    int64_t counters[MCT_MAX_COUNTERS];
+    for (int i = 0; i < self->counters.count; i++) {
+        counters[i] = (int64_t)__atomic_load_n(&self->counters.values[i], __ATOMIC_RELAXED);
+    }
     uint8_t data[HEALTH_SIZE];
     mctau_health_t message = {
         .utime = microseconds(self, health->tick),
@@ -182,7 +196,10 @@ static void send_health(mct_telemetry *self, bool finished)
         .dropped = (int64_t)health->dropped,
         .publish_errors = (int64_t)self->counts.publish_errors,
         .log_errors = (int64_t)self->counts.log_errors,
-        .worst_late_us = health->worst_late_us,
+        .worst_late_us = health->lateness.worst_us,
+        .worst_age_us = health->age.worst_us,
+        .counter_count = self->counters.count,
+        .counters = counters,
         .faults = (int32_t)health->faults,
         .fault_count = MCT_FAULT_COUNT,
         .fault_ticks = (int64_t *)health->fault_ticks,
@@ -190,9 +207,12 @@ static void send_health(mct_telemetry *self, bool finished)
         .mode_ticks = (int64_t *)health->mode_ticks,
         .finished = finished,
     };
-    memcpy(message.lateness, health->lateness, sizeof message.lateness);
+    copy_histogram(&health->lateness, message.lateness);
+    copy_histogram(&health->age, message.age);
     if (self->timing != NULL) {
         message.missed_ticks = (int64_t)__atomic_load_n(&self->timing->missed_ticks, __ATOMIC_RELAXED);
+        message.worst_work_us = copy_histogram(&self->timing->work, message.work);
+        message.worst_round_trip_us = copy_histogram(&self->timing->round_trip, message.round_trip);
     }
     const int length = mctau_health_t_encode(data, 0, sizeof data, &message);
     publish(self, MCT_CHANNEL_HEALTH, data, length);
@@ -207,15 +227,11 @@ static void send_health(mct_telemetry *self, bool finished)
 
 static void account(mct_telemetry_health *health, const mct_record *record)
 {
-    int bin = 0;
-    for (uint32_t us = record->late_us; us > 0 && bin < 31; us >>= 1) {
-        bin++;
-    }
-    health->lateness[bin]++;
+    mct_histogram_add(&health->lateness, record->late_us);
+    mct_histogram_add(&health->age, record->reading.age_us);
     health->tick = record->tick;
     health->dropped = record->dropped;
     health->faults = record->faults;
-    health->worst_late_us = record->late_us > health->worst_late_us ? record->late_us : health->worst_late_us;
     for (uint32_t fault = 0, bits = record->faults; bits != 0 && fault < MCT_FAULT_COUNT;
          fault++, bits >>= 1) {
         health->fault_ticks[fault] += bits & 1;
@@ -325,6 +341,7 @@ static mct_status encode_scene(mct_telemetry *self, const char *text)
     char *units[MCT_MAX_STATES];
     char *modes[MCT_MODE_COUNT];
     char *faults[MCT_FAULT_COUNT];
+    char *counters[MCT_MAX_COUNTERS];
     const size_t length = strlen(text);
     if (length >= sizeof self->log.buffer) {
         return MCT_ERROR_BOUND;
@@ -343,6 +360,9 @@ static mct_status encode_scene(mct_telemetry *self, const char *text)
     }
     for (int i = 0; i < MCT_FAULT_COUNT; i++) {
         faults[i] = (char *)mct_fault_name((mct_fault)i);
+    }
+    for (int i = 0; i < self->counters.count; i++) {
+        counters[i] = (char *)self->counters.counters[i].name;
     }
     const char *unit = scene->effects & MCT_MOTOR ? "V" : system->input_without_motor->unit;
     const mctau_scene_t message = {
@@ -364,6 +384,8 @@ static mct_status encode_scene(mct_telemetry *self, const char *text)
         .mode_names = modes,
         .fault_count = MCT_FAULT_COUNT,
         .fault_names = faults,
+        .counter_count = self->counters.count,
+        .counter_names = counters,
     };
     self->scene_length = mctau_scene_t_encode(self->scene_message, 0, sizeof self->scene_message, &message);
     return self->scene_length > 0 ? MCT_OK : MCT_ERROR_BOUND;
@@ -482,6 +504,7 @@ mct_status mct_telemetry_start(mct_telemetry *telemetry, mct_ring *ring, const m
     telemetry->ring = ring;
     telemetry->scene = scene;
     telemetry->timing = targets->timing;
+    telemetry->counters = targets->counters;
     telemetry->coordinates = system->coordinate_count;
     telemetry->states = mct_state_count(system, mct_scene_effects(scene));
     telemetry->health.period = (uint64_t)(health_period / scene->dt + 0.5);

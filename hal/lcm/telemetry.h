@@ -22,7 +22,7 @@
 #include "mctau/scene.h"
 #include "mctau/supervisor.h"
 
-#define MCT_TELEMETRY_VERSION 1 /**< of the meaning of the messages; scene_t carries it */
+#define MCT_TELEMETRY_VERSION 2 /**< of the meaning of the messages; scene_t carries it */
 
 #define MCT_CHANNEL_TICK      "MCTAU_TICK"
 #define MCT_CHANNEL_SCENE     "MCTAU_SCENE"
@@ -40,7 +40,8 @@ typedef struct {
     const char *log; /**< path of the event log, or NULL or "" for none */
     /** What a replay needs: the file's text, then a line MCT_OVERRIDE_MARK "table.key=value" an override. */
     const char *scene_text;
-    const mct_timing *timing; /**< of the HAL, for the ticks it missed, read while the loop runs; or NULL */
+    const mct_timing *timing; /**< of the HAL, read while the loop runs; or NULL */
+    mct_counters counters;    /**< of the HAL, likewise; zero: none */
 } mct_telemetry_targets;
 
 /** What became of the records; read it after mct_telemetry_stop. */
@@ -72,8 +73,8 @@ typedef struct {
     uint64_t tick;      /**< newest */
     uint64_t dropped;
     uint32_t faults;
-    uint32_t worst_late_us;
-    uint64_t lateness[32];
+    mct_histogram lateness;
+    mct_histogram age; /**< of feedback */
     uint64_t fault_ticks[MCT_FAULT_COUNT];
     uint64_t mode_ticks[MCT_MODE_COUNT];
 } mct_telemetry_health;
@@ -83,6 +84,7 @@ typedef struct mct_telemetry {
     mct_ring *ring;
     const mct_scene *scene;
     const mct_timing *timing;
+    mct_counters counters;
     int32_t coordinates, states;
     bool stopping; /**< set by mct_telemetry_stop, read by the thread */
     pthread_t thread;

@@ -79,8 +79,9 @@ static bool has_fault(const mct_sim *sim, int32_t fault)
     return sim->fault == fault && sim->plant.tick >= sim->fault_begin && sim->plant.tick < sim->fault_end;
 }
 
-static mct_status sim_open(void *context)
+static mct_status sim_open(void *context, mct_message *why)
 {
+    (void)why; /* nothing can go wrong */
     mct_sim *sim = context;
     sim->input = 0;
     if (sim->realtime) {
@@ -133,6 +134,11 @@ static mct_status sim_wait_tick(void *context)
     return MCT_OK;
 }
 
+static void sim_arm(void *context)
+{
+    (void)context; /* a simulated motor is always ready */
+}
+
 static void sim_stop(void *context)
 {
     mct_sim *sim = context;
@@ -151,6 +157,12 @@ static const mct_timing *sim_timing(void *context)
     return &sim->clock.timing;
 }
 
+static mct_counters sim_counters(void *context)
+{
+    (void)context;
+    return (mct_counters){0};
+}
+
 mct_hal mct_sim_hal(mct_sim *sim)
 {
     static const mct_hal_ops ops = {
@@ -160,9 +172,11 @@ mct_hal mct_sim_hal(mct_sim *sim)
         .write = sim_write,
         .wait_tick = sim_wait_tick,
         .stop = sim_stop,
+        .arm = sim_arm,
         .close = sim_stop,
         .plant = sim_plant,
         .timing = sim_timing,
+        .counters = sim_counters,
     };
     return (mct_hal){&ops, sim};
 }

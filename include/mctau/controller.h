@@ -75,6 +75,9 @@ mct_status mct_controller_init(mct_controller *controller, const mct_scene *scen
  */
 mct_real mct_controller_update(mct_controller *controller, const mct_reading *reading, mct_real applied);
 
+/** Begins anew from the scene's initial position, at rest: what a drive that has restarted calls for. */
+void mct_controller_restart(mct_controller *controller);
+
 /** How well a region can be caught: |z|, 1 at its edge. */
 mct_real mct_controller_reach(const mct_controller *controller);
 

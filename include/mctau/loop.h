@@ -21,6 +21,7 @@ typedef struct {
     mct_input input;
     mct_controller controller;
     mct_supervisor supervisor;
+    bool rearm;        /**< asked for by mct_loop_rearm */
     mct_record record; /**< of the last tick */
 } mct_loop;
 
@@ -37,7 +38,15 @@ mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mc
                          mct_samples samples, mct_message *why);
 
 /**
- * One tick, ending where the next begins. A HAL that cannot read or write latches MCT_FAULT_HAL; the loop
+ * Asks for faults to be cleared and the drives to be armed again, at the next tick; a cause that persists latches
+ * again. After a drive's restart the mechanism must be at its initial position, at rest. May be called by another
+ * thread.
+ */
+void mct_loop_rearm(mct_loop *loop);
+
+/**
+ * One tick, ending where the next begins. When a fault is latched the HAL is stopped, once; it stays at zero volts
+ * until it is armed again. A HAL that cannot read or write latches MCT_FAULT_HAL; the loop
  * goes on at zero volts. Bounded work but for the HAL's wait_tick. Cost on a laptop, plant included: below
  * 400 ns.
  */

@@ -52,6 +52,9 @@ typedef struct {
  */
 void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct_constants *constants);
 
+/** Begins anew: the next reading stands for the scene's initial position, at rest. What was learned is kept. */
+void mct_observer_restart(mct_observer *observer);
+
 /**
  * Takes in a tick's reading; one that is flagged leaves positions to the model for that tick.
  * @param input  voltage applied since the last tick

@@ -21,6 +21,7 @@ typedef struct {
     mct_real applied;                           /**< input let through [V] */
     mct_mode mode;
     uint32_t faults;  /**< latched, bit (1 << mct_fault) */
+    bool rearmed;     /**< faults were cleared before this tick */
     uint32_t late_us; /**< how late the tick began */
     uint64_t dropped; /**< records lost so far because the ring was full */
 } mct_record;

@@ -24,6 +24,25 @@ typedef struct {
 enum { MCT_PRECISION_DOUBLE, MCT_PRECISION_FLOAT };
 enum { MCT_CONTROLLER_NONE, MCT_CONTROLLER_SWING_UP_BALANCE };
 enum { MCT_INPUT_NONE, MCT_INPUT_CONSTANT, MCT_INPUT_SINE, MCT_INPUT_STEPS, MCT_INPUT_CSV };
+enum { MCT_CAN_NATIVE, MCT_CAN_VESC, MCT_CAN_ODRIVE };
+enum { MCT_CAN_MODE_VOLTAGE, MCT_CAN_MODE_FOC, MCT_CAN_MODE_TORQUE };
+enum { MCT_CAN_FIRMWARE_0_6, MCT_CAN_FIRMWARE_0_5 };
+enum {
+    MCT_CAN_FAULT_NONE,
+    MCT_CAN_FAULT_DROP,
+    MCT_CAN_FAULT_DROP_COMMANDS,
+    MCT_CAN_FAULT_DELAY,
+    MCT_CAN_FAULT_DUPLICATE,
+    MCT_CAN_FAULT_REORDER,
+    MCT_CAN_FAULT_SHORT,
+    MCT_CAN_FAULT_REMOTE,
+    MCT_CAN_FAULT_FORMAT,
+    MCT_CAN_FAULT_NAN,
+    MCT_CAN_FAULT_SILENCE,
+    MCT_CAN_FAULT_REBOOT,
+    MCT_CAN_FAULT_ESTOP,
+    MCT_CAN_FAULT_ERROR
+};
 enum { MCT_SENSOR_FAULT_NONE, MCT_SENSOR_FAULT_NAN, MCT_SENSOR_FAULT_SILENT, MCT_SENSOR_FAULT_FROZEN };
 
 typedef struct mct_scene {
@@ -47,6 +66,7 @@ typedef struct mct_scene {
     double capture;
     double track_half_length; /**< [m] */
     double overspeed;         /**< [rad/s] */
+    double rearm_after;       /**< [s]; 0: only when asked to */
     double weights[2 * MCT_MAX_COORDINATES];
     double input_weight;
     /* [input] */
@@ -63,6 +83,23 @@ typedef struct mct_scene {
     double noise; /**< [counts], standard deviation */
     int32_t sensor_fault;
     double sensor_fault_time, sensor_fault_duration; /**< [s] */
+    /* [can] */
+    int32_t can_protocol; /**< MCT_CAN_NATIVE, ... */
+    int32_t can_mode;     /**< MCT_CAN_MODE_... */
+    int32_t can_firmware; /**< of an ODrive, MCT_CAN_FIRMWARE_... */
+    int32_t can_node;     /**< drive of the motor */
+    int32_t can_inverted;
+    int32_t can_pole_pairs;
+    int32_t can_bitrate; /**< [bit/s] */
+    double can_highest_load;
+    double can_watchdog;  /**< [s] */
+    double can_startup;   /**< [s] */
+    double can_duty_ramp; /**< [1/s] */
+    int32_t can_lockstep;
+    int32_t can_fault; /**< MCT_CAN_FAULT_... */
+    double can_fault_time, can_fault_duration;        /**< [s] */
+    int32_t can_encoder_node[MCT_MAX_COORDINATES];    /**< drive that reads it; -1: see the key's doc */
+    double can_encoder_ratio[MCT_MAX_COORDINATES];    /**< drive's turns per turn or metre */
     /* [variation] */
     double variation_spread;
     int32_t variation_seed;
@@ -79,10 +116,10 @@ typedef struct {
     const mct_field *fields;
 } mct_scene_table;
 
-#define MCT_SCENE_TABLE_COUNT 6
+#define MCT_SCENE_TABLE_COUNT 7
 /**
- * [scene], [controller], [input], [sensors], [variation], [telemetry]. The tables [parameters], [effects],
- * [initial] and [weights], and the encoders' keys of [sensors], follow from the system's descriptor:
+ * [scene], [controller], [input], [sensors], [can], [variation], [telemetry]. The tables [parameters], [effects],
+ * [initial] and [weights], and the encoders' keys of [sensors] and [can], follow from the system's descriptor:
  * parameters; mct_effects; names of states (the current with an inductive motor only); names of coordinates
  * and rates; mct_coordinate.encoder.
  *

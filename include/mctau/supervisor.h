@@ -20,6 +20,11 @@ typedef enum {
     MCT_FAULT_OVERSPEED,      /**< a rate beyond the scene's limit */
     MCT_FAULT_HAL,            /**< the HAL could not read or write */
     MCT_FAULT_STOPPED,        /**< stopped from outside */
+    MCT_FAULT_LINK_DOWN,      /**< nothing could be sent to the motor */
+    MCT_FAULT_NOT_READY,      /**< the motor's drive ceased to obey */
+    MCT_FAULT_DRIVE,          /**< a drive reported an error */
+    MCT_FAULT_RESTARTED,      /**< a drive restarted and forgot its position */
+    MCT_FAULT_ESTOP,          /**< an emergency stop was called on the bus */
     MCT_FAULT_COUNT
 } mct_fault;
 
@@ -38,6 +43,7 @@ typedef struct {
     uint64_t derated_ticks;           /**< voltage reduced because feedback was late */
     uint64_t limited_ticks;           /**< voltage cut at the limit */
     mct_real limit;                   /**< [V]; the largest finite number for a plain force */
+    mct_real steps_per_volt;          /**< resolution of what is passed; 0: exact */
     mct_real watch_limit;             /**< input above which the encoder must move */
     uint32_t derate_us;               /**< age from which the voltage is reduced */
     uint32_t stale_us;                /**< age from which it is zero */
@@ -46,7 +52,13 @@ typedef struct {
     int32_t last_counts;              /**< of the driven coordinate */
     mct_real track_half_length;       /**< [m], of a driven length */
     mct_real overspeed;               /**< [rad/s] of the driven angle */
+    uint32_t rearm_limit;             /**< ticks of good feedback after which a fault is forgotten; 0: never */
+    uint32_t good_ticks;              /**< of good feedback since a fault was latched */
+    uint64_t rearmed;                 /**< times that faults were cleared */
 } mct_supervisor;
+
+/** Voltages of a closed loop are whole millivolts: what a drive can be told, and the same in a simulation. */
+#define MCT_STEPS_PER_VOLT 1000
 
 void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene);
 
@@ -55,7 +67,8 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene);
  * @param reading   of this tick
  * @param estimate  coordinates and rates, or NULL in open loop
  * @param wanted    [V]
- * @return wanted, limited, or 0. Always finite, never beyond the limit. Cost: some 10 ns.
+ * @return wanted, limited and rounded to the resolution, or 0. Always finite, never beyond the limit. Cost: some
+ *         10 ns.
  */
 mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate,
                              mct_real wanted);
@@ -64,8 +77,14 @@ mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *read
 void mct_supervisor_fault(mct_supervisor *supervisor, mct_fault fault);
 
 /**
- * Clears latched faults. The motor is driven again from the next valid reading on; a cause that persists
- * latches again.
+ * Whether feedback has been good for as long as the scene asks for (controller.rearm_after) since a fault was
+ * latched; asks once for each time.
+ */
+bool mct_supervisor_wants_rearm(const mct_supervisor *supervisor);
+
+/**
+ * Clears latched faults. The motor is driven again from the next reading on that is well and says that the drive is
+ * ready; a cause that persists latches again.
  */
 void mct_supervisor_rearm(mct_supervisor *supervisor);
 

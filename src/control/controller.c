@@ -355,6 +355,13 @@ static mct_real balance(mct_controller *controller)
     return -weighted(controller->gains, x, 2 * n);
 }
 
+void mct_controller_restart(mct_controller *controller)
+{
+    mct_observer_restart(&controller->observer);
+    controller->mode = MCT_MODE_WAIT;
+    memset(controller->travelled, 0, sizeof controller->travelled);
+}
+
 mct_real mct_controller_update(mct_controller *controller, const mct_reading *reading, mct_real applied)
 {
     mct_observer_update(&controller->observer, reading, applied);

@@ -47,6 +47,18 @@ void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct
     }
 }
 
+void mct_observer_restart(mct_observer *observer)
+{
+    observer->started = false;
+    for (int i = 0; i < observer->system->coordinate_count; i++) {
+        mct_encoder_track *track = &observer->encoders[i];
+        track->travelled = 0;
+        track->deviation = 0;
+        observer->x[i] = track->turn != 0 ? wrapped(track->start) : track->start;
+        observer->x[observer->system->coordinate_count + i] = 0;
+    }
+}
+
 /* Counts moved since the last tick, modulo the counter's range. */
 static int32_t counts_moved(const mct_encoder_track *track, int32_t counts, uint32_t shift)
 {
@@ -60,7 +72,7 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
 {
     const int n = observer->system->coordinate_count;
     const mct_real h = observer->h;
-    const bool valid = reading->flags == 0;
+    const bool valid = (reading->flags & MCT_READING_NO_COUNTS) == 0;
     if (!observer->started) {
         if (valid) {
             for (int i = 0; i < n; i++) {

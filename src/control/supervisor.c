@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#define MOST_STEPS MCT_R(1e9) /* whole numbers that fit an int32_t */
+
 static const struct {
     const char *name;
     const char *text;
@@ -20,6 +22,14 @@ static const struct {
     [MCT_FAULT_OVERSPEED] = {"overspeed", "the driven axis turned faster than controller.overspeed"},
     [MCT_FAULT_HAL] = {"hal_error", "the hardware layer could not read or write"},
     [MCT_FAULT_STOPPED] = {"stopped", "the run was stopped from outside"},
+    [MCT_FAULT_LINK_DOWN] = {"link_down", "nothing could be sent to the drive; look at the bus and its interface"},
+    [MCT_FAULT_NOT_READY] = {"drive_not_ready",
+                             "the drive ceased to obey commands; look at its supply and its watchdog"},
+    [MCT_FAULT_DRIVE] = {"drive_fault", "a drive reported an error; look it up in the drive's manual"},
+    [MCT_FAULT_RESTARTED] =
+        {"drive_restarted",
+         "a drive restarted and forgot its position; bring the mechanism to its initial position, then re-arm"},
+    [MCT_FAULT_ESTOP] = {"estop", "an emergency stop was called on the bus"},
 };
 
 const char *mct_fault_name(mct_fault fault)
@@ -43,10 +53,14 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene)
     supervisor->limit = MCT_REAL_MAX;
     supervisor->watch_limit = MCT_REAL_MAX;
     if (scene->effects & MCT_MOTOR) {
+        const double supply = scene->parameters[system->supply_parameter];
+        supervisor->steps_per_volt = supervisor->observed ? MCT_STEPS_PER_VOLT : 0;
         if (scene->effects & MCT_SATURATION) {
-            supervisor->limit = (mct_real)scene->parameters[system->supply_parameter];
+            const double whole = (double)(int64_t)(supply * MCT_STEPS_PER_VOLT + 1e-6);
+            supervisor->limit =
+                supervisor->observed ? (mct_real)whole / MCT_STEPS_PER_VOLT : (mct_real)supply;
         }
-        supervisor->watch_limit = (mct_real)(0.5 * scene->parameters[system->supply_parameter]);
+        supervisor->watch_limit = (mct_real)(0.5 * supply);
     }
     /* Feedback ages in ticks: a loop slower than 1 kHz waits three of them. */
     supervisor->derate_us = tick_us * 2 > DERATE_US ? tick_us * 2 : DERATE_US;
@@ -54,6 +68,7 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene)
     supervisor->frozen_limit = (uint32_t)(FROZEN_MS * 1e-3 / scene->dt) + 1;
     supervisor->track_half_length = (mct_real)scene->track_half_length;
     supervisor->overspeed = (mct_real)scene->overspeed;
+    supervisor->rearm_limit = (uint32_t)(scene->rearm_after / scene->dt + 0.5);
 }
 
 void mct_supervisor_fault(mct_supervisor *supervisor, mct_fault fault)
@@ -61,12 +76,20 @@ void mct_supervisor_fault(mct_supervisor *supervisor, mct_fault fault)
     supervisor->latched |= 1u << fault;
     supervisor->counts[fault]++;
     supervisor->armed = false;
+    supervisor->good_ticks = 0;
+}
+
+bool mct_supervisor_wants_rearm(const mct_supervisor *supervisor)
+{
+    return supervisor->rearm_limit > 0 && supervisor->good_ticks == supervisor->rearm_limit;
 }
 
 void mct_supervisor_rearm(mct_supervisor *supervisor)
 {
     supervisor->latched = 0;
     supervisor->frozen_ticks = 0;
+    supervisor->good_ticks = 0;
+    supervisor->rearmed++;
 }
 
 static mct_real size_of(mct_real value)
@@ -110,12 +133,41 @@ static void watch_motion(mct_supervisor *supervisor, const mct_reading *reading,
     }
 }
 
+static void watch_flags(mct_supervisor *supervisor, uint32_t flags)
+{
+    static const struct {
+        uint32_t flag;
+        mct_fault fault;
+    } meanings[] = {
+        {MCT_READING_INVALID, MCT_FAULT_SENSOR_INVALID}, {MCT_READING_LINK_DOWN, MCT_FAULT_LINK_DOWN},
+        {MCT_READING_DRIVE_FAULT, MCT_FAULT_DRIVE},      {MCT_READING_RESTARTED, MCT_FAULT_RESTARTED},
+        {MCT_READING_ESTOP, MCT_FAULT_ESTOP},
+    };
+    for (size_t i = 0; i < sizeof meanings / sizeof meanings[0]; i++) {
+        if (flags & meanings[i].flag) {
+            mct_supervisor_fault(supervisor, meanings[i].fault);
+        }
+    }
+    if (supervisor->armed && (flags & MCT_READING_NOT_READY)) {
+        mct_supervisor_fault(supervisor, MCT_FAULT_NOT_READY);
+    }
+}
+
+/* Whole millivolts, never beyond the limit, which is whole itself. */
+static mct_real rounded(const mct_supervisor *supervisor, mct_real volts)
+{
+    if (supervisor->steps_per_volt == 0) {
+        return volts;
+    }
+    const mct_real steps = mct_clamp(volts * supervisor->steps_per_volt, MOST_STEPS);
+    const mct_real whole = (mct_real)(int32_t)(steps < 0 ? steps - MCT_R(0.5) : steps + MCT_R(0.5));
+    return mct_clamp(whole / supervisor->steps_per_volt, supervisor->limit);
+}
+
 mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate,
                              mct_real wanted)
 {
-    if (reading->flags & MCT_READING_INVALID) {
-        mct_supervisor_fault(supervisor, MCT_FAULT_SENSOR_INVALID);
-    }
+    watch_flags(supervisor, reading->flags);
     if (reading->age_us >= supervisor->stale_us) {
         mct_supervisor_fault(supervisor, MCT_FAULT_SENSOR_STALE);
     }
@@ -127,6 +179,8 @@ mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *read
     }
     watch_motion(supervisor, reading, wanted);
     if (supervisor->latched != 0) {
+        const uint32_t lasting = MCT_READING_NOT_READY | MCT_READING_DRIVE_FAULT; /* until the drive is armed */
+        supervisor->good_ticks += (reading->flags & ~lasting) == 0;
         return 0;
     }
     if (!supervisor->armed) {
@@ -145,5 +199,5 @@ mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *read
         passed *= (mct_real)left / (mct_real)(supervisor->stale_us - supervisor->derate_us);
         supervisor->derated_ticks++;
     }
-    return passed;
+    return rounded(supervisor, passed);
 }

@@ -22,10 +22,34 @@ static void observe_hal(mct_loop *loop, mct_record *record)
     if (plant != NULL) {
         record->plant = *plant;
     }
-    record->late_us = timing->latest_us;
+    record->late_us = timing->lateness.latest_us;
     if (loop->ring != NULL) {
         record->dropped = loop->ring->dropped;
     }
+}
+
+void mct_loop_rearm(mct_loop *loop)
+{
+    __atomic_store_n(&loop->rearm, true, __ATOMIC_RELAXED);
+}
+
+/* Clears faults when somebody asks for it or when the scene does; the drives are armed again. */
+static void rearm(mct_loop *loop)
+{
+    mct_supervisor *supervisor = &loop->supervisor;
+    const bool asked = __atomic_load_n(&loop->rearm, __ATOMIC_RELAXED);
+    if (asked) {
+        __atomic_store_n(&loop->rearm, false, __ATOMIC_RELAXED);
+    }
+    loop->record.rearmed = supervisor->latched != 0 && (asked || mct_supervisor_wants_rearm(supervisor));
+    if (!loop->record.rearmed) {
+        return;
+    }
+    if (loop->controlled && (supervisor->latched & (1u << MCT_FAULT_RESTARTED))) {
+        mct_controller_restart(&loop->controller);
+    }
+    mct_supervisor_rearm(supervisor);
+    loop->hal.ops->arm(loop->hal.context);
 }
 
 void mct_loop_tick(mct_loop *loop)
@@ -34,6 +58,8 @@ void mct_loop_tick(mct_loop *loop)
     mct_supervisor *supervisor = &loop->supervisor;
     mct_record *record = &loop->record;
     record->tick = loop->tick;
+    rearm(loop);
+    const bool was_well = supervisor->latched == 0;
     observe_hal(loop, record);
     if (hal->read(loop->hal.context, &record->reading) != MCT_OK) {
         record->reading.flags |= MCT_READING_MISSING;
@@ -50,6 +76,9 @@ void mct_loop_tick(mct_loop *loop)
         record->wanted = mct_input_at(&loop->input, loop->tick);
     }
     record->applied = mct_supervisor_pass(supervisor, &record->reading, estimate, record->wanted);
+    if (was_well && supervisor->latched != 0) {
+        hal->stop(loop->hal.context);
+    }
     if (hal->write(loop->hal.context, record->applied) != MCT_OK) {
         mct_supervisor_fault(supervisor, MCT_FAULT_HAL);
         hal->stop(loop->hal.context);

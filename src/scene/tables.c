@@ -39,6 +39,12 @@ static const char *const precisions[] = {"double", "float", NULL};
 static const char *const controllers[] = {"none", "swing_up_balance", NULL};
 static const char *const inputs[] = {"none", "constant", "sine", "steps", "csv", NULL};
 static const char *const faults[] = {"none", "nan", "silent", "frozen", NULL};
+static const char *const can_protocols[] = {"native", "vesc", "odrive", NULL};
+static const char *const can_modes[] = {"voltage", "foc", "torque", NULL};
+static const char *const can_firmwares[] = {"0.6", "0.5", NULL};
+static const char *const can_faults[] = {"none",    "drop",      "drop_commands", "delay",  "duplicate",
+                                         "reorder", "short",     "remote",        "format", "nan",
+                                         "silence", "reboot",    "estop",         "error",  NULL};
 
 /* The names of systems and steppers stand in mct_systems and mct_steppers: see mct_choice_name. */
 static const mct_field scene_fields[] = {
@@ -50,7 +56,9 @@ static const mct_field scene_fields[] = {
     REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
     CHOICE("precision", precisions, MCT_PRECISION_DOUBLE, precision,
            "scalar of the simulation and the controller"),
-    TEXT("hal", hal, "what stands in for the hardware"),
+    TEXT("hal", hal,
+         "the hardware: sim; ring (simulated drives on a simulated bus); socketcan:INTERFACE; candump:FILE (a "
+         "recorded bus)"),
     BOOLEAN("realtime", 0, realtime, "paced by the clock instead of by the simulation"),
 };
 
@@ -66,6 +74,8 @@ static const mct_field controller_fields[] = {
          "a coordinate that is a length stays within +- this"),
     REAL("overspeed", "rad/s", 1, 1e6, 2000, overspeed,
          "rate of an angle beyond which the supervisor cuts the voltage"),
+    REAL("rearm_after", "s", 0, 1000, 0, rearm_after,
+         "after a fault drive again when feedback has been well for so long; 0: only when asked to"),
     REAL("input_weight", "", 1e-6, 1e6, 1, input_weight, "cost of the voltage; larger is gentler"),
 };
 
@@ -92,6 +102,29 @@ static const mct_field sensor_fields[] = {
     REAL("fault_duration", "s", 0, LONGEST, 0.1, sensor_fault_duration, "for how long"),
 };
 
+static const mct_field can_fields[] = {
+    CHOICE("protocol", can_protocols, MCT_CAN_NATIVE, can_protocol, "what the drives speak"),
+    CHOICE("mode", can_modes, MCT_CAN_MODE_VOLTAGE, can_mode,
+           "what a drive is told: voltage (native; vesc with a brushed motor; odrive with a gimbal motor), foc "
+           "(vesc with a three-phase motor) or torque (odrive, the armature computed here)"),
+    CHOICE("firmware", can_firmwares, MCT_CAN_FIRMWARE_0_6, can_firmware, "of an odrive"),
+    INTEGER("node", "", 0, 63, 1, can_node, "number of the drive that powers the motor"),
+    BOOLEAN("inverted", 0, can_inverted, "positive volts turn the motor the other way"),
+    INTEGER("pole_pairs", "", 1, 100, 7, can_pole_pairs, "of the motor of a vesc, which tells electrical turns"),
+    INTEGER("bitrate", "bit/s", 10000, 1000000, 1000000, can_bitrate, "of the bus, for its load"),
+    REAL("highest_load", "", 0.01, 10, 0.7, can_highest_load, "fraction of the bus that may be used"),
+    REAL("watchdog", "s", 0, 2, 0.1, can_watchdog,
+         "after this long without a command a drive stops by itself: sent to a native drive, in the others to "
+         "be configured; verified at the start where the drive tells; 0: none, at your own risk"),
+    REAL("startup", "s", 0.1, 60, 3, can_startup, "longest wait for the drives' messages at the start"),
+    REAL("duty_ramp", "1/s", 0.1, 1e6, 20, can_duty_ramp, "how fast a simulated vesc changes its duty"),
+    BOOLEAN("lockstep", 0, can_lockstep,
+            "over a socket: paced by the drive's answers instead of the clock; for simulated drives only"),
+    CHOICE("fault", can_faults, MCT_CAN_FAULT_NONE, can_fault, "what befalls simulated drives and their frames"),
+    REAL("fault_time", "s", 0, LONGEST, 1, can_fault_time, "when"),
+    REAL("fault_duration", "s", 0, LONGEST, 0.1, can_fault_duration, "for how long; 0: one tick; a reboot takes 50 ms at least, frames of a delay come 8 ticks late"),
+};
+
 static const mct_field variation_fields[] = {
     REAL("spread", "", 0, 0.5, 0, variation_spread,
          "largest relative change of a parameter that the controller is not told"),
@@ -114,13 +147,14 @@ const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT] = {
     TABLE("input", input_fields, "open loop, held over each tick"),
     TABLE("sensors", sensor_fields,
           "encoders and what is wrong with them; counts per turn or metre by the system's encoders"),
+    TABLE("can", can_fields, "motor and encoders on a CAN bus, with scene.hal = \"socketcan:can0\""),
     TABLE("variation", variation_fields, "a plant that differs from its model"),
     TABLE("telemetry", telemetry_fields, "who is told"),
 };
 
 /* --- all tables --- */
 
-enum { TABLE_SCENE, TABLE_SENSORS = 3 };
+enum { TABLE_SCENE, TABLE_SENSORS = 3, TABLE_CAN = 4 };
 
 /* Deviations that cost as much as the full input. */
 #define SMALLEST_WEIGHT 1e-6
@@ -145,7 +179,9 @@ int mct_key_count(int table, const mct_system *system)
     case MCT_TABLE_WEIGHTS:
         return 2 * system->coordinate_count;
     default:
-        return mct_scene_tables[table].field_count + (table == TABLE_SENSORS ? system->coordinate_count : 0);
+        return mct_scene_tables[table].field_count + (table == TABLE_SENSORS ? system->coordinate_count
+                                                      : table == TABLE_CAN   ? 2 * system->coordinate_count
+                                                                             : 0);
     }
 }
 
@@ -188,9 +224,16 @@ mct_scene_key mct_key_at(int table, const mct_system *system, int number)
         const int fixed = mct_scene_tables[table].field_count;
         if (number < fixed) {
             key.field = mct_scene_tables[table].fields[number];
-        } else {
+        } else if (table == TABLE_SENSORS) {
             key.field = system->coordinates[number - fixed].encoder;
             key.field.offset = PLACE(counts_per_unit) + sizeof(double) * (size_t)(number - fixed);
+        } else if (number - fixed < coordinates) {
+            key.field = system->coordinates[number - fixed].encoder_node;
+            key.field.offset = PLACE(can_encoder_node) + sizeof(int32_t) * (size_t)(number - fixed);
+        } else {
+            const int encoder = number - fixed - coordinates;
+            key.field = system->coordinates[encoder].encoder_ratio;
+            key.field.offset = PLACE(can_encoder_ratio) + sizeof(double) * (size_t)encoder;
         }
         return key;
     }

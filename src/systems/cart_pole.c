@@ -76,13 +76,13 @@ static const mct_field parameters[PARAMETERS] = {
 static const mct_coordinate coordinates[2] = {
     {.position = MCT_QUANTITY("cart_position", "m", -1e6, 1e6, 0, "to the right"),
      .rate = MCT_QUANTITY("cart_velocity", "m/s", -1e6, 1e6, 0, ""),
-     .encoder = MCT_QUANTITY("cart_counts_per_metre", "1/m", 1, 1e9, 43958, "encoder of the cart"),
+     MCT_ENCODER("cart", "metre", "1/m", 1, 43958, "the cart"),
      .position_weight = 0.3,
      .rate_weight = 1.0},
     {.position = MCT_QUANTITY("pole_angle", "rad", -1e6, 1e6, 3.141592653589793, "clockwise from upright"),
      .rate = MCT_QUANTITY("pole_rate", "rad/s", -1e6, 1e6, 0, ""),
      .is_angle = true,
-     .encoder = MCT_QUANTITY("pole_counts_per_turn", "1/turn", 4, 1e9, 4096, "encoder of the pole"),
+     MCT_ENCODER("pole", "turn", "1/turn", 4, 4096, "the pole"),
      .position_weight = 0.15,
      .rate_weight = 1.5},
 };
@@ -380,6 +380,11 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[1][2] = zero;
 }
 
+static const mct_motor *motor_of(const void *constants)
+{
+    return &((const constants_t *)constants)->motor;
+}
+
 static void linearise(const struct mct_scene *scene, mct_linear_model *model)
 {
     const double *p = scene->parameters;
@@ -446,5 +451,6 @@ const mct_system mct_cart_pole = {
     .accelerate = accelerate,
     .place = place,
     .linearise = linearise,
+    .motor = motor_of,
     .kernel = kernel,
 };

@@ -80,15 +80,14 @@ static const mct_coordinate coordinates[2] = {
     {.position = MCT_QUANTITY("arm_angle", "rad", -1e6, 1e6, 3.141592653589793, "clockwise from upright"),
      .rate = MCT_QUANTITY("arm_rate", "rad/s", -1e6, 1e6, 0, ""),
      .is_angle = true,
-     .encoder = MCT_QUANTITY("arm_counts_per_turn", "1/turn", 4, 1e9, 4096, "encoder of the arm"),
+     MCT_ENCODER("arm", "turn", "1/turn", 4, 4096, "the arm"),
      .position_weight = 0.2,
      .rate_weight = 2},
     {.position = MCT_QUANTITY("wheel_angle", "rad", -1e6, 1e6, 0, "of the wheel relative to the arm"),
      .rate = MCT_QUANTITY("wheel_rate", "rad/s", -1e6, 1e6, 0, ""),
      .is_angle = true,
      .is_cyclic = true,
-     .encoder =
-         MCT_QUANTITY("wheel_counts_per_turn", "1/turn", 4, 1e9, 4096, "encoder of the wheel, on the arm"),
+     MCT_ENCODER("wheel", "turn", "1/turn", 4, 4096, "the wheel, on the arm"),
      .position_weight = 300,
      .rate_weight = 300},
 };
@@ -413,6 +412,11 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     }
 }
 
+static const mct_motor *motor_of(const void *constants)
+{
+    return &((const constants_t *)constants)->motor;
+}
+
 static void linearise(const struct mct_scene *scene, mct_linear_model *model)
 {
     uint32_t effects = scene->effects;
@@ -465,5 +469,6 @@ const mct_system mct_reaction_wheel = {
     .accelerate = accelerate,
     .place = place,
     .linearise = linearise,
+    .motor = motor_of,
     .kernel = kernel,
 };

@@ -108,6 +108,79 @@ static void test_feedback_is_derated_from_3_ms_and_zero_and_latched_from_5_ms(vo
     check_latched(MCT_FAULT_SENSOR_STALE, "sensor_stale");
 }
 
+static void test_what_passes_is_whole_millivolts_within_the_limit(void)
+{
+    for (int k = -11000; k <= 11000; k++) {
+        const double wanted = k * 1.00037e-3;
+        const mct_real passed = pass(wanted);
+        const int32_t steps = (int32_t)(passed * 1000 + (passed < 0 ? MCT_R(-0.5) : MCT_R(0.5)));
+        TEST_ASSERT_TRUE(passed == (mct_real)steps / 1000);
+        TEST_ASSERT_TRUE(passed <= 10 && passed >= -10);
+        if (wanted < 10 && wanted > -10) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.000501, wanted, (double)passed);
+        }
+    }
+}
+
+static void test_what_a_drive_reports_latches_its_fault(void)
+{
+    static const struct {
+        uint32_t flag;
+        mct_fault fault;
+        const char *name;
+    } cases[] = {
+        {MCT_READING_LINK_DOWN, MCT_FAULT_LINK_DOWN, "link_down"},
+        {MCT_READING_DRIVE_FAULT, MCT_FAULT_DRIVE, "drive_fault"},
+        {MCT_READING_NOT_READY, MCT_FAULT_NOT_READY, "drive_not_ready"},
+        {MCT_READING_RESTARTED, MCT_FAULT_RESTARTED, "drive_restarted"},
+        {MCT_READING_ESTOP, MCT_FAULT_ESTOP, "estop"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        pass(5);
+        TEST_ASSERT_TRUE(gate.armed);
+        reading.flags = cases[i].flag;
+        TEST_ASSERT_TRUE(pass(5) == 0);
+        check_latched(cases[i].fault, cases[i].name);
+    }
+}
+
+static void test_a_drive_that_is_not_ready_yet_is_waited_for_without_a_fault(void)
+{
+    reading.flags = MCT_READING_NOT_READY;
+    for (int k = 0; k < 1000; k++) {
+        TEST_ASSERT_TRUE(pass(5) == 0);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, gate.latched);
+    reading.flags = 0;
+    TEST_ASSERT_TRUE(pass(5) == 5);
+}
+
+static void test_good_feedback_asks_for_rearming_after_the_time_that_the_scene_gives(void)
+{
+    gate.rearm_limit = 50;
+    pass(5);
+    reading.flags = MCT_READING_MISSING;
+    reading.age_us = 6000;
+    pass(5);
+    reading.flags = MCT_READING_NOT_READY; /* it was stopped: this lasts until it is armed */
+    reading.age_us = 0;
+    for (int k = 0; k < 49; k++) {
+        pass(5);
+        TEST_ASSERT_FALSE(mct_supervisor_wants_rearm(&gate));
+    }
+    reading.flags = MCT_READING_LINK_DOWN; /* not good: from the beginning again */
+    pass(5);
+    reading.flags = MCT_READING_NOT_READY;
+    for (int k = 0; k < 50; k++) {
+        TEST_ASSERT_FALSE(mct_supervisor_wants_rearm(&gate));
+        pass(5);
+    }
+    TEST_ASSERT_TRUE(mct_supervisor_wants_rearm(&gate));
+    mct_supervisor_rearm(&gate);
+    TEST_ASSERT_FALSE(mct_supervisor_wants_rearm(&gate));
+    TEST_ASSERT_EQUAL_UINT64(1, gate.rearmed);
+}
+
 static void test_a_driven_encoder_that_stands_still_latches_sensor_frozen(void)
 {
     int ticks = 0;
@@ -247,7 +320,7 @@ static void start_loop(const mct_scene *scene)
     const mct_hal hal = mct_sim_hal(&sim);
     TEST_ASSERT_EQUAL_INT_MESSAGE(
         MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
-    TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context, NULL));
 }
 
 static void test_silent_sensors_end_at_zero_volts_within_6_ticks_and_it_stays_so(void)
@@ -347,7 +420,7 @@ static void test_a_hal_that_cannot_read_or_write_is_latched_and_ends_at_zero_vol
             TEST_ASSERT_TRUE(k < 300 || sim.plant.input == 0);
         }
         TEST_ASSERT_EQUAL_UINT32(1u << MCT_FAULT_HAL, loop.supervisor.latched);
-        TEST_ASSERT_EQUAL_INT(which, broken.stops);
+        TEST_ASSERT_EQUAL_INT(1, broken.stops);
     }
 }
 
@@ -358,6 +431,10 @@ int main(void)
     RUN_TEST(test_the_motor_is_not_driven_before_the_first_valid_reading);
     RUN_TEST(test_a_sensor_value_that_is_not_finite_latches_sensor_invalid);
     RUN_TEST(test_feedback_is_derated_from_3_ms_and_zero_and_latched_from_5_ms);
+    RUN_TEST(test_what_passes_is_whole_millivolts_within_the_limit);
+    RUN_TEST(test_what_a_drive_reports_latches_its_fault);
+    RUN_TEST(test_a_drive_that_is_not_ready_yet_is_waited_for_without_a_fault);
+    RUN_TEST(test_good_feedback_asks_for_rearming_after_the_time_that_the_scene_gives);
     RUN_TEST(test_a_driven_encoder_that_stands_still_latches_sensor_frozen);
     RUN_TEST(test_an_encoder_may_stand_still_under_little_voltage);
     RUN_TEST(test_an_estimate_that_is_not_finite_latches_its_fault);

@@ -208,7 +208,7 @@ static void run_loop(const mct_scene *scene, const char *name, const char *varia
         mct_loop_init(&loop, scene, mct_sim_hal(&sim), NULL, (mct_samples){NULL, 0}, NULL) != MCT_OK) {
         fail(name, "not accepted");
     }
-    loop.hal.ops->open(loop.hal.context);
+    loop.hal.ops->open(loop.hal.context, NULL);
     const uint64_t ticks = (uint64_t)(scene->duration / scene->dt + 0.5);
     for (uint64_t tick = 0; tick < ticks; tick++) {
         mct_loop_tick(&loop);

@@ -33,7 +33,7 @@ static void begin(const mct_scene *scene)
     mct_message why = {""};
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_sim_init(&sim, scene, &why), why.text);
     hal = mct_sim_hal(&sim);
-    TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context, NULL));
 }
 
 static mct_reading read_once(void)
@@ -237,7 +237,7 @@ static void test_lockstep_time_knows_no_jitter_and_the_plants_state_is_there_to_
     TEST_ASSERT_TRUE(hal.ops->plant(hal.context) == &sim.plant.state);
     const mct_timing *const timing = hal.ops->timing(hal.context);
     TEST_ASSERT_EQUAL_UINT64(0, timing->missed_ticks);
-    TEST_ASSERT_EQUAL_UINT32(0, timing->worst_us);
+    TEST_ASSERT_EQUAL_UINT32(0, timing->lateness.worst_us);
     TEST_ASSERT_EQUAL_UINT64(100, sim.plant.tick);
 }
 

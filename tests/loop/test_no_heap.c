@@ -83,7 +83,7 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void)
         const mct_hal hal = mct_sim_hal(&sim);
         status = status == MCT_OK ? mct_loop_init(&loop, &scene, hal, &ring, (mct_samples){NULL, 0}, NULL)
                                   : status;
-        status = status == MCT_OK ? hal.ops->open(hal.context) : status;
+        status = status == MCT_OK ? hal.ops->open(hal.context, NULL) : status;
         for (int k = 0; k < 12000; k++) { /* past a swing-up, and past a full ring */
             mct_loop_tick(&loop);
         }

@@ -213,6 +213,7 @@ static void test_any_bit_of_a_tick_that_is_flipped_is_named(void)
         {"applied", 8},
         {"mode", 4},
         {"faults", 4},
+        {"rearmed", 1},
         {"late_us", 8},
         {"dropped", 8},
         {"state.arm_angle", 8},

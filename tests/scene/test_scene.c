@@ -246,7 +246,7 @@ static void test_an_override_is_called_by_its_origin(void)
                             "--set: 'scene.system' is not followed by '='");
     assert_override_refused(
         MCT_ERROR_RANGE, CART, "foo.bar=1",
-        "--set: [foo]: unknown table; allowed scene, controller, input, sensors, variation, telemetry, "
+        "--set: [foo]: unknown table; allowed scene, controller, input, sensors, can, variation, telemetry, "
         "parameters, effects, initial, weights");
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_UNSUITED, read_with(CART, "scene.dt=0.001", "scene.stepper=expo"));
     TEST_ASSERT_EQUAL_STRING(
@@ -310,7 +310,7 @@ static void test_unknown_keys_and_tables_are_refused_with_the_closest_name(void)
     assert_refused(MCT_ERROR_RANGE, CART "[paramters]\n",
                    "x.toml:3: [paramters]: unknown table; did you mean 'parameters'? allowed scene, "
                    "controller, input, sensors, "
-                   "variation, telemetry, parameters, effects, initial, weights");
+                   "can, variation, telemetry, parameters, effects, initial, weights");
     assert_refused(
         MCT_ERROR_RANGE, CART "[initial]\npole_angel = 2\n",
         "x.toml:4: initial.pole_angel: unknown key of [initial] for cart_pole; did you mean 'pole_angle'? "

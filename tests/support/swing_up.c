@@ -28,7 +28,7 @@ swing_up run_swing_up(const mct_scene *scene, double duration, double settled)
     const mct_hal hal = mct_sim_hal(&sim);
     TEST_ASSERT_EQUAL_INT_MESSAGE(
         MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
-    TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context, NULL));
     const int upright = sim.plant.system->upright_coordinate;
     swing_up result = {.upright_time = INFINITY, .reached_time = INFINITY};
     const long ticks = lround(duration / scene->dt);

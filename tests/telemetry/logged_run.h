@@ -54,7 +54,7 @@ static inline void logged_run_prepare(logged_run *run, const char *text, mct_sam
 static inline void logged_run_start(logged_run *run, const mct_telemetry_targets *targets)
 {
     const mct_hal *hal = &run->loop.hal;
-    hal->ops->open(hal->context);
+    hal->ops->open(hal->context, NULL);
     run->status = mct_telemetry_start(&run->telemetry, &run->ring, &run->scene, targets, &run->why);
 }
 

@@ -130,7 +130,7 @@ static void measure_ticks(const measure_effort *effort, int system, mct_mode mod
         mct_loop_init(&self.loop, &scene, mct_sim_hal(&self.sim), &self.ring, none, &why) != MCT_OK) {
         fail(mct_systems[system]->name, why.text);
     }
-    self.loop.hal.ops->open(self.loop.hal.context);
+    self.loop.hal.ops->open(self.loop.hal.context, NULL);
     run_ticks(&self, mode == MCT_MODE_BALANCE ? SETTLE_TICKS : 16);
     self.sim_start = self.sim;
     self.loop_start = self.loop;

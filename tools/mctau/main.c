@@ -9,7 +9,7 @@
 #include "verbs.h"
 
 /* A new verb is a file and a row here. */
-static const verb *const verbs[] = {&verb_run, &verb_mct, &verb_list, &verb_replay};
+static const verb *const verbs[] = {&verb_run, &verb_mct, &verb_list, &verb_replay, &verb_drive};
 enum { VERBS = sizeof verbs / sizeof verbs[0] };
 
 static void print_overview(FILE *file)

@@ -57,7 +57,8 @@ static void print_option(const option *self, FILE *file)
     } else if (field->unit[0] != '\0') {
         fprintf(file, " [%s]", field->unit);
     }
-    if (field->kind == MCT_FIELD_REAL) {
+    const bool tells_default = self->doc != NULL && strstr(self->doc, "left out") != NULL;
+    if (field->kind == MCT_FIELD_REAL && !tells_default) {
         fprintf(file, "; default %g", field->standard);
     }
     fprintf(file, "\n  %-24s = --set %s=%s\n", "", self->key,

@@ -18,7 +18,7 @@ static const option options[] = {
     {"stepper", "NAME", "scene.stepper", "how the plant is simulated"},
     {"precision", "NAME", "scene.precision", NULL},
     {"realtime", NULL, "scene.realtime", NULL},
-    {"hal", "NAME", "scene.hal", "what stands in for the hardware; sim"},
+    {"hal", "NAME", "scene.hal", NULL},
     OPTION_SET,
     {"csv", "FILE", NULL,
      "one row a tick: time, states, estimates, input wanted and applied, mode, faults; - is stdout"},
@@ -37,17 +37,22 @@ const verb verb_run = {
     .text =
         "Runs a scene from beginning to end and prints what happened. SCENE is a TOML file; - reads it from "
         "stdin.\n"
-        "In lockstep, the default, it runs as fast as it can; --realtime keeps the clock and shows how well.",
+        "In lockstep, the default, it runs as fast as it can; --realtime keeps the clock and shows how well.\n"
+        "Over a CAN bus (--hal socketcan:can0) the clock is kept. After a fault the motor has zero volts; the "
+        "signal\n"
+        "SIGUSR1 clears it and arms the drives again.",
     .options = options,
     .examples = "  mctau run scenes/reaction_wheel.toml\n"
                 "  mctau run scenes/cart_pole.toml --csv run.csv --set parameters.pole_mass=0.2\n"
                 "  mctau run scenes/cart_pole.toml --set variation.spread=0.1 --set variation.seed=7 --json\n"
-                "  mctau run scenes/reaction_wheel.toml --duration 10 --realtime --log run.lcm\n",
+                "  mctau run scenes/reaction_wheel.toml --duration 10 --realtime --log run.lcm\n"
+                "  mctau run scenes/reaction_wheel.toml --hal socketcan:can0 --set can.protocol=odrive\n"
+                "  mctau run scenes/reaction_wheel.toml --hal ring --set can.fault=drop --set can.fault_time=10\n",
     .exit_codes = "  0    balanced: upright within 2 degrees for at least the last second; without a "
                   "controller: finished\n"
                   "  1    not balanced, a fault was latched, or the simulation diverged\n"
                   "  2    the command line or the scene is wrong\n"
-                  "  3    a file could not be read or written, or took not all of the run\n"
+                  "  3    the bus or a drive was not as it must be; a file could not be read or written, or took not all of the run\n"
                   "  130  stopped by Ctrl-C (128 + the signal's number), at zero volts\n",
     .run = run_verb,
 };
@@ -67,6 +72,20 @@ static void on_signal(int number)
     }
 }
 
+/* Counts requests to clear faults and arm again. */
+static volatile int rearm_requests;
+
+static void on_rearm(int number)
+{
+    (void)number;
+    rearm_requests++;
+}
+
+static void say_start(const mct_can_report *report)
+{
+    print_start(report, stderr);
+}
+
 static void watch_signals(void)
 {
     struct sigaction action;
@@ -76,6 +95,8 @@ static void watch_signals(void)
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     sigaction(SIGHUP, &action, NULL);
+    action.sa_handler = on_rearm;
+    sigaction(SIGUSR1, &action, NULL);
     action.sa_handler = SIG_IGN; /* a reader that goes away must not end a run */
     sigaction(SIGPIPE, &action, NULL);
 }
@@ -179,6 +200,8 @@ static int run_scene(const scene_file *file, const arguments *given)
         .samples = file->samples,
         .sample_count = file->sample_count,
         .stop = &stop_signal,
+        .rearm = &rearm_requests,
+        .started = arguments_value(given, "json") == NULL ? say_start : NULL,
         .progress = isatty(STDERR_FILENO) == 1,
     };
     run_report report = {.scene = file, .options = &asked};

@@ -19,6 +19,10 @@ typedef struct {
 const char *verdict_name(verdict self);
 
 void print_run_json(const run_report *report, FILE *file);
+
+/* What the start found on a CAN bus. */
+void print_start(const mct_can_report *can, FILE *file);
+
 void print_run(const run_report *report, FILE *file);
 
 #endif

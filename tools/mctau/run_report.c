@@ -64,17 +64,19 @@ static void json_faults(json *out, const run_result *result)
 
 static void json_timing(json *out, const run_result *result)
 {
-    double lateness[32];
-    for (int i = 0; i < 32; i++) {
-        lateness[i] = (double)result->lateness[i];
+    const mct_timing *timing = &result->timing;
+    double lateness[MCT_HISTOGRAM_BINS];
+    for (int i = 0; i < MCT_HISTOGRAM_BINS; i++) {
+        lateness[i] = (double)timing->lateness.bins[i];
     }
     json_object(out, "timing");
-    json_count(out, "missed_ticks", result->missed_ticks);
-    json_count(out, "worst_late_us", result->worst_late_us);
-    json_count(out, "worst_work_us", result->worst_work_us);
+    json_count(out, "missed_ticks", timing->missed_ticks);
+    json_count(out, "worst_late_us", timing->lateness.worst_us);
+    json_count(out, "worst_work_us", timing->work.worst_us);
+    json_count(out, "worst_round_trip_us", timing->round_trip.worst_us);
     json_boolean(out, "has_priority", result->has_priority);
     json_boolean(out, "has_memory", result->has_memory);
-    json_vector(out, "lateness", lateness, 32);
+    json_vector(out, "lateness", lateness, MCT_HISTOGRAM_BINS);
     json_end_object(out);
 }
 
@@ -86,6 +88,36 @@ static void json_telemetry(json *out, const run_result *result)
     json_count(out, "publish_errors", result->publish_errors);
     json_count(out, "logged", result->logged);
     json_count(out, "log_errors", result->log_errors);
+    json_end_object(out);
+}
+
+static void json_can(json *out, const run_result *result)
+{
+    const mct_can_report *can = &result->can;
+    json_object(out, "can");
+    json_number(out, "nominal_load", can->nominal_load);
+    json_number(out, "load", can->load);
+    json_boolean(out, "watchdog_verified", can->watchdog_verified);
+    json_number(out, "bus_voltage", can->bus_voltage);
+    json_list(out, "messages");
+    for (int i = 0; i < can->heard_count; i++) {
+        const mct_can_heard *heard = &can->heard[i];
+        json_object(out, NULL);
+        json_text(out, "name", heard->message->name);
+        json_count(out, "node", heard->node);
+        json_count(out, "id", heard->id);
+        json_number(out, "period", heard->period);
+        json_number(out, "slowest", heard->slowest);
+        json_end_object(out);
+    }
+    json_end_list(out);
+    if (result->has_recording) {
+        json_object(out, "recording");
+        json_count(out, "compared", result->compared);
+        json_count(out, "mismatches", result->mismatches);
+        json_count(out, "unmatched", result->unmatched);
+        json_end_object(out);
+    }
     json_end_object(out);
 }
 
@@ -118,7 +150,9 @@ void print_run_json(const run_report *report, FILE *file)
         json_hex(&out, result->names[i], result->state[i]);
     }
     json_end_object(&out);
-    json_energies(&out, result);
+    if (result->has_energy) {
+        json_energies(&out, result);
+    }
     json_faults(&out, result);
     json_text(&out, "verdict", verdict_name(report->verdict));
     json_time(&out, "upright_at", result->upright_at);
@@ -132,8 +166,15 @@ void print_run_json(const run_report *report, FILE *file)
     json_count(&out, "derated_ticks", result->derated_ticks);
     json_count(&out, "rejected_inputs", result->rejected_inputs);
     json_count(&out, "diverged_ticks", result->diverged_ticks);
+    json_count(&out, "rearmed", result->rearmed);
+    for (int i = 0; i < result->counter_count; i++) {
+        json_count(&out, result->counters[i].name, result->counts[i]);
+    }
     json_end_object(&out);
-    if (scene->realtime) {
+    if (result->has_can) {
+        json_can(&out, result);
+    }
+    if (result->realtime) {
         json_timing(&out, result);
     }
     if (scene->log[0] != '\0' || scene->lcm[0] != '\0') {
@@ -187,7 +228,10 @@ static void print_verdict(const run_report *report, FILE *file)
 static void print_state(const run_report *report, FILE *file)
 {
     const run_result *result = &report->result;
-    fprintf(file, "\nState at %g s\n", time_of(report));
+    if (result->states == 0) {
+        return;
+    }
+    fprintf(file, "\nState at %g s%s\n", time_of(report), result->has_energy ? "" : ", as estimated");
     for (int i = 0; i < result->states; i++) {
         const double value = result->state[i];
         const bool is_angle = strcmp(result->units[i], "rad") == 0;
@@ -238,6 +282,9 @@ static void print_faults(const run_report *report, FILE *file)
     if (!any) {
         fputs("\nFaults: none\n", file);
     }
+    if (result->rearmed > 0) {
+        fprintf(file, "  cleared and armed again %" PRIu64 " times\n", result->rearmed);
+    }
     char limited[64];
     snprintf(limited, sizeof limited, "the voltage was at its limit of %g V", result->limit);
     print_share(file, limited, result->saturated_ticks, result->ticks);
@@ -247,27 +294,67 @@ static void print_faults(const run_report *report, FILE *file)
                 result->ticks);
 }
 
+/* What the start found on the bus. */
+void print_start(const mct_can_report *can, FILE *file)
+{
+    fprintf(file, "Bus load %.0f %% (%.0f %% without stuff bits)", 100 * can->load, 100 * can->nominal_load);
+    if (can->bus_voltage > 0) {
+        fprintf(file, ", supply %.1f V", can->bus_voltage);
+    }
+    fprintf(file, "; the drive's watchdog %s\n",
+            can->watchdog_verified ? "was seen to act"
+            : can->watchdog_tells  ? "is not used (can.watchdog = 0)"
+                                   : "cannot be tried over this protocol: make sure of it in the drive");
+    for (int i = 0; i < can->heard_count; i++) {
+        const mct_can_heard *heard = &can->heard[i];
+        fprintf(file, "  node %2d  %-28s every %8.2f ms (allowed up to %g ms)\n", heard->node,
+                heard->message->name, 1e3 * heard->period, 1e3 * heard->slowest);
+    }
+}
+
+static void print_can(const run_result *result, FILE *file)
+{
+    fputs("\nOn the bus\n", file);
+    for (int i = 0; i < result->counter_count; i++) {
+        if (result->counts[i] > 0) {
+            fprintf(file, "  %-16s %9" PRIu64 "  %s\n", result->counters[i].name, result->counts[i],
+                    result->counters[i].doc);
+        }
+    }
+    if (result->has_recording) {
+        fprintf(file,
+                "  of the commands, %" PRIu64 " stand in the log, %" PRIu64 " of them differ; %" PRIu64
+                " do not\n",
+                result->compared, result->mismatches, result->unmatched);
+    }
+    const mct_histogram *round_trip = &result->timing.round_trip;
+    if (round_trip->worst_us > 0) {
+        fprintf(file, "  from a command to its answer at most %" PRIu32 " us\n", round_trip->worst_us);
+    }
+}
+
 static void print_timing(const run_result *result, FILE *file)
 {
     enum { WIDTH = 50 };
+    const mct_timing *timing = &result->timing;
     uint64_t most = 1;
-    for (int i = 0; i < 32; i++) {
-        most = result->lateness[i] > most ? result->lateness[i] : most;
+    for (int i = 0; i < MCT_HISTOGRAM_BINS; i++) {
+        most = timing->lateness.bins[i] > most ? timing->lateness.bins[i] : most;
     }
     fprintf(file,
             "\nClock: latest wake-up %" PRIu32 " us late, longest tick %" PRIu32 " us of work, %" PRIu64
             " ticks missed\n",
-            result->worst_late_us, result->worst_work_us, result->missed_ticks);
+            timing->lateness.worst_us, timing->work.worst_us, timing->missed_ticks);
     if (!result->has_priority || !result->has_memory) {
         fprintf(file, "  without%s%s%s: run as root, or raise the limits rtprio and memlock\n",
                 result->has_priority ? "" : " real-time priority",
                 !result->has_priority && !result->has_memory ? " and" : "",
                 result->has_memory ? "" : " locked memory");
     }
-    for (int i = 0; i < 32; i++) {
-        if (result->lateness[i] > 0) {
-            fprintf(file, "  below %9.0f us %8" PRIu64 "  %.*s\n", ldexp(1, i), result->lateness[i],
-                    (int)(1 + (WIDTH - 1) * result->lateness[i] / most),
+    for (int i = 0; i < MCT_HISTOGRAM_BINS; i++) {
+        if (timing->lateness.bins[i] > 0) {
+            fprintf(file, "  below %9.0f us %8" PRIu64 "  %.*s\n", ldexp(1, i), timing->lateness.bins[i],
+                    (int)(1 + (WIDTH - 1) * timing->lateness.bins[i] / most),
                     "##################################################");
         }
     }
@@ -359,9 +446,14 @@ void print_run(const run_report *report, FILE *file)
             report->scene->runner->precision, scene->dt, report->result.ticks);
     print_verdict(report, file);
     print_state(report, file);
-    print_energy(&report->result, file);
+    if (report->result.has_energy) {
+        print_energy(&report->result, file);
+    }
     print_faults(report, file);
-    if (scene->realtime) {
+    if (report->result.has_can) {
+        print_can(&report->result, file);
+    }
+    if (report->result.realtime) {
         print_timing(&report->result, file);
     } else {
         print_speed(report, file);

@@ -5,6 +5,7 @@
 
 #include "mctau/input.h"
 #include "mctau/plant.h"
+#include "runner_drive.h"
 #include "runner_replay.h"
 #include "runner_run.h"
 
@@ -85,4 +86,5 @@ const mct_runner MCT_RUNNER = {
     .run = runner_run,
     .mct = runner_mct,
     .replay = runner_replay,
+    .drive = runner_drive,
 };

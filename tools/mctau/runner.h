@@ -11,6 +11,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hal/hal.h"
+#include "hal/socketcan/can.h"
+#include "hal/socketcan/drive.h"
 #include "mctau/message.h"
 #include "mctau/scene.h"
 #include "mctau/status.h"
@@ -29,6 +32,8 @@ typedef struct {
     const double *samples;  /* of a csv input, one a tick */
     size_t sample_count;
     const volatile int *stop; /* set by a signal: the run ends at zero volts */
+    const volatile int *rearm; /* counts requests to clear faults and arm again */
+    void (*started)(const struct mct_can_report *report); /* told what the start found on a CAN bus; or NULL */
     bool progress;            /* show progress on stderr */
 } run_options;
 
@@ -61,10 +66,19 @@ typedef struct {
     double ns_per_tick;         /* wall-clock time of the loop, without init, CSV and waiting for telemetry */
     double seconds;             /* the same in all [s] */
     bool stopped;               /* by run_options.stop */
+    bool has_energy;            /* the plant's state is known */
+    bool realtime;              /* paced by the clock */
+    uint64_t rearmed;           /* times that faults were cleared */
+    /* CAN */
+    bool has_can;
+    mct_can_report can;
+    const mct_counter *counters;
+    uint64_t counts[MCT_MAX_COUNTERS];
+    int counter_count;
+    bool has_recording; /* the bus is a recorded log */
+    uint64_t compared, mismatches, unmatched; /* commands, against the log */
     /* real time */
-    uint64_t missed_ticks;
-    uint32_t worst_late_us, worst_work_us;
-    uint64_t lateness[32];
+    mct_timing timing;
     bool has_priority, has_memory;
     /* telemetry */
     uint64_t dropped, published, publish_errors, logged, log_errors;
@@ -103,6 +117,38 @@ typedef struct {
     double recorded, replayed;
 } replay_result;
 
+/* A virtual drive on a CAN interface. */
+typedef struct {
+    const char *interface;
+    bool has_duration;        /* ends after scene.duration of the mechanism's time; else when stopped */
+    const char *csv;          /* path, "-" for stdout; NULL for nowhere */
+    const volatile int *stop; /* set by a signal */
+    void (*started)(const mct_can_axes *axes); /* told once it is on the bus; or NULL */
+    bool progress;                             /* show progress on stderr */
+} drive_options;
+
+typedef struct {
+    int states;
+    const char *names[RUNNER_MAX_STATES];
+    const char *units[RUNNER_MAX_STATES];
+    double state[RUNNER_MAX_STATES];
+    bool stopped; /* before its duration was over */
+    bool released, lockstep;
+    bool powered; /* a bridge puts the volts on the motor */
+    double volts; /* at the motor at the end [V] */
+    mct_can_drive_result drive;
+    mct_can_drive_state motor; /* of its drive, at the end */
+    mct_can_link_state link;   /* at the end */
+    uint64_t counts[MCT_CAN_COUNTS];
+    uint64_t diverged_ticks;
+    double deviation, least_deviation; /* from upright at the end, and ever [rad] */
+    double upright_at; /* [s] from then on within 2 degrees of upright to the end; negative when not */
+    mct_timing timing; /* zero in lockstep */
+    bool has_priority, has_memory;
+    uint64_t csv_rows, csv_errors;
+    int csv_errno;
+} drive_result;
+
 typedef struct {
     const char *precision;
     size_t real_size;
@@ -115,6 +161,8 @@ typedef struct {
     mct_status (*mct)(const mct_scene *scene, const run_options *options, const double *input,
                       mct_result *result, mct_message *why);
     mct_status (*replay)(const char *log, replay_result *result, mct_message *why);
+    mct_status (*drive)(const mct_scene *scene, const drive_options *options, drive_result *result,
+                        mct_message *why);
 } mct_runner;
 
 extern const mct_runner mct_runner_f64;

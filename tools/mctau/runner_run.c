@@ -18,6 +18,10 @@
 
 #include "csv_output.h"
 #include "hal/sim/sim.h"
+#include "hal/socketcan/can.h"
+#include "hal/socketcan/candump.h"
+#include "hal/socketcan/drive.h"
+#include "hal/socketcan/socket.h"
 #include "mctau/loop.h"
 #include "say.h"
 #if MCTAU_HAVE_LCM
@@ -34,10 +38,21 @@ static const uint64_t never = UINT64_MAX;
 typedef struct {
     const mct_scene *scene;
     const run_options *options;
-    mct_sim sim;
     mct_loop loop;
     mct_ring ring;
-    const mct_state *plant; /* NULL where nobody knows it */
+    /* the hardware, one of them by the name that the scene gives */
+    mct_sim sim;
+    mct_can can;
+    mct_can_socket socket;
+    mct_can_candump log;
+    char *log_text;
+    mct_can_ring bus;
+    mct_can_drive drive;
+    mct_clock *clock;
+    const mct_plant *mechanism; /* NULL where nobody knows it */
+    const mct_state *plant;     /* its state */
+    bool realtime;
+    int rearmed; /* requests that have been passed on */
     uint64_t ticks;         /* of the whole run */
     /* what the ticks have shown */
     int upright; /* index of the angle that is 0 upright */
@@ -187,7 +202,7 @@ static void write_rows(run *self)
 
 static mct_status open_csv(run *self, mct_message *why)
 {
-    const bool realtime = self->scene->realtime != 0;
+    const bool realtime = self->realtime;
     if (self->options->csv == NULL || self->options->csv[0] == '\0') {
         return MCT_OK;
     }
@@ -234,6 +249,7 @@ static mct_status start_telemetry(run *self, run_result *result, mct_message *wh
         .log = self->options->log,
         .scene_text = self->options->scene_text,
         .timing = self->loop.hal.ops->timing(self->loop.hal.context),
+        .counters = self->loop.hal.ops->counters(self->loop.hal.context),
     };
     const mct_status status = mct_telemetry_start(&self->telemetry, &self->ring, self->scene, &targets, why);
     self->has_telemetry = status == MCT_OK;
@@ -302,18 +318,92 @@ static void *show_progress(void *context)
 
 /* --- from beginning to end --- */
 
-/* Zero-initialised HAL by the name that a scene gives. */
+/* What follows "NAME:" in the scene's hal, or NULL when it is another one. */
+static const char *argument_of(const char *hal, const char *name)
+{
+    const size_t length = strlen(name);
+    return strncmp(hal, name, length) == 0 && hal[length] == ':' && hal[length + 1] != '\0' ? hal + length + 1
+                                                                                          : NULL;
+}
+
+static mct_status read_log(run *self, const char *path, size_t *length, mct_message *why)
+{
+    enum { LARGEST = 1 << 28 };
+    FILE *file = fopen(path, "rb");
+    struct stat there;
+    bool well = file != NULL && fstat(fileno(file), &there) == 0 && there.st_size < LARGEST;
+    if (well) {
+        *length = (size_t)there.st_size;
+        self->log_text = need_memory(malloc(*length + 1));
+        well = fread(self->log_text, 1, *length, file) == *length;
+    }
+    if (!well) {
+        mct_message_add(why, "scene.hal: ");
+        mct_message_add(why, path);
+        mct_message_add(why, ": the recorded bus cannot be read: ");
+        mct_message_add(why, errno != 0 ? strerror(errno) : "too large");
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+    return well ? MCT_OK : MCT_ERROR_IO;
+}
+
+static mct_status use_can(run *self, mct_can_transport transport, bool lockstep, mct_hal *hal, mct_message *why)
+{
+    self->realtime = !lockstep;
+    self->clock = &self->can.clock;
+    *hal = mct_can_hal(&self->can);
+    return mct_can_init(&self->can, self->scene, transport, lockstep, why);
+}
+
+/* A controller and a simulated drive at the two ends of a bus within the process. */
+static mct_status use_ring(run *self, mct_hal *hal, mct_message *why)
+{
+    mct_can_ring_init(&self->bus);
+    mct_status status = mct_can_drive_init(&self->drive, self->scene, mct_can_ring_end(&self->bus, 1), why);
+    status = status != MCT_OK ? status : use_can(self, mct_can_ring_end(&self->bus, 0), true, hal, why);
+    if (status == MCT_OK) {
+        mct_can_drive_serve(&self->drive, &self->bus);
+        self->drive.held = true;
+        self->mechanism = &self->drive.sim.plant;
+        self->can.plant = &self->mechanism->state;
+        status = mct_can_drive_open(&self->drive, why);
+    }
+    return status;
+}
+
+/* HAL by the name that a scene gives. */
 static mct_status choose_hal(run *self, mct_hal *hal, mct_message *why)
 {
     const mct_scene *scene = self->scene;
-    if (strcmp(scene->hal, "sim") != 0) {
-        mct_message_add(why, "scene.hal: found ");
-        mct_message_add(why, scene->hal[0] != '\0' ? scene->hal : "nothing");
-        mct_message_add(why, "; allowed sim");
-        return MCT_ERROR_RANGE;
+    const char *const interface = argument_of(scene->hal, "socketcan");
+    const char *const path = argument_of(scene->hal, "candump");
+    if (strcmp(scene->hal, "sim") == 0) {
+        self->realtime = scene->realtime != 0;
+        self->clock = &self->sim.clock;
+        self->mechanism = &self->sim.plant;
+        *hal = mct_sim_hal(&self->sim);
+        return mct_sim_init(&self->sim, scene, why);
     }
-    *hal = mct_sim_hal(&self->sim);
-    return mct_sim_init(&self->sim, scene, why);
+    if (strcmp(scene->hal, "ring") == 0) {
+        return use_ring(self, hal, why);
+    }
+    if (interface != NULL) {
+        const mct_can_transport socket =
+            mct_can_socket_transport(&self->socket, interface, (uint32_t)scene->can_bitrate);
+        return use_can(self, socket, scene->can_lockstep != 0, hal, why);
+    }
+    if (path != NULL) {
+        size_t length = 0;
+        const mct_status status = read_log(self, path, &length, why);
+        const mct_can_transport log = mct_can_candump_transport(&self->log, self->log_text, length);
+        return status != MCT_OK ? status : use_can(self, log, true, hal, why);
+    }
+    mct_message_add(why, "scene.hal: found ");
+    mct_message_add(why, scene->hal[0] != '\0' ? scene->hal : "nothing");
+    mct_message_add(why, "; allowed sim, ring, socketcan:INTERFACE, candump:FILE");
+    return MCT_ERROR_RANGE;
 }
 
 static mct_status prepare(run *self, run_result *result, mct_message *why)
@@ -352,7 +442,11 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
 static void tick(run *self)
 {
     mct_loop *loop = &self->loop;
-    if (self->has_telemetry && self->scene->realtime == 0 && mct_ring_is_full(&self->ring)) {
+    if (*self->options->rearm != self->rearmed) {
+        self->rearmed = *self->options->rearm;
+        mct_loop_rearm(loop);
+    }
+    if (self->has_telemetry && !self->realtime && mct_ring_is_full(&self->ring)) {
         if (!self->telemetry_is_stuck) {
             wait_for_telemetry(self);
         }
@@ -376,7 +470,7 @@ static void run_ticks(run *self)
 {
     const mct_hal *hal = &self->loop.hal;
     const volatile int *stop = self->options->stop;
-    const bool in_blocks = self->scene->realtime == 0;
+    const bool in_blocks = !self->realtime;
     track_deviation(self, 0);
     while (self->loop.tick < self->ticks && *stop == 0) {
         const uint64_t left = self->ticks - self->loop.tick;
@@ -396,13 +490,15 @@ static void run_ticks(run *self)
 static void fill_state(const run *self, run_result *result)
 {
     const mct_system *system = self->reader.system;
-    result->states =
-        self->plant != NULL ? mct_state_count(system, self->reader.effects) : 2 * system->coordinate_count;
+    /* What nobody simulates and nobody estimates is not known. */
+    result->states = self->plant != NULL    ? mct_state_count(system, self->reader.effects)
+                     : self->loop.controlled ? 2 * system->coordinate_count
+                                             : 0;
     for (int i = 0; i < result->states; i++) {
         const mct_field *field = mct_state_field(system, i);
         result->names[i] = field->name;
         result->units[i] = field->unit;
-        result->state[i] = self->plant != NULL ? mct_plant_value(&self->sim.plant, i)
+        result->state[i] = self->plant != NULL ? mct_plant_value(self->mechanism, i)
                                                : (double)self->loop.record.estimate[i];
     }
 }
@@ -411,16 +507,28 @@ static void fill_timing(const run *self, run_result *result)
 {
     const mct_hal *hal = &self->loop.hal;
     const mct_timing *timing = hal->ops->timing(hal->context);
-    result->missed_ticks = timing->missed_ticks;
-    result->worst_late_us = timing->worst_us;
-    result->worst_work_us = timing->worst_work_us;
-    memcpy(result->lateness, timing->lateness, sizeof result->lateness);
-    result->has_priority = self->sim.clock.has_priority;
-    result->has_memory = self->sim.clock.has_memory;
+    result->timing = *timing;
+    result->has_priority = self->clock->has_priority;
+    result->has_memory = self->clock->has_memory;
     result->seconds = 1e-9 * (double)(now_ns() - self->started_ns);
     if (self->loop.tick > 0) {
         result->ns_per_tick = (double)(self->loop_ns - self->waiting_ns) / (double)self->loop.tick;
     }
+}
+
+static void fill_can(run *self, run_result *result)
+{
+    const mct_hal *hal = &self->loop.hal;
+    const mct_counters counters = hal->ops->counters(hal->context);
+    result->counters = counters.counters;
+    result->counter_count = counters.count;
+    memcpy(result->counts, counters.values, sizeof counters.values[0] * (size_t)counters.count);
+    result->has_can = hal->context == &self->can;
+    result->can = self->can.report;
+    result->has_recording = self->log_text != NULL;
+    result->compared = self->log.compared;
+    result->mismatches = self->log.mismatches;
+    result->unmatched = self->log.unmatched;
 }
 
 static void fill_result(run *self, run_result *result)
@@ -441,8 +549,12 @@ static void fill_result(run *self, run_result *result)
     result->saturated_ticks = self->saturated_ticks;
     result->limited_ticks = supervisor->limited_ticks;
     result->derated_ticks = supervisor->derated_ticks;
-    result->rejected_inputs = self->sim.plant.rejected_inputs;
-    result->diverged_ticks = self->sim.plant.diverged_ticks;
+    if (self->mechanism != NULL) {
+        result->rejected_inputs = self->mechanism->rejected_inputs;
+        result->diverged_ticks = self->mechanism->diverged_ticks;
+    }
+    result->rearmed = supervisor->rearmed;
+    result->realtime = self->realtime;
     result->limit = supervisor->limit < MCT_REAL_MAX ? (double)supervisor->limit : (double)INFINITY;
     result->controlled = self->loop.controlled;
     result->mode = mct_mode_name(self->loop.record.mode);
@@ -452,29 +564,36 @@ static void fill_result(run *self, run_result *result)
     result->worst_last_second = (double)self->worst_last_second;
     const uint64_t upright_tick = self->last_outside == never ? 0 : self->last_outside + 1;
     result->upright_at = self->last_outside == self->loop.tick ? -1 : (double)upright_tick * dt;
-    mct_plant_evaluate(&self->sim.plant, &at);
-    result->energy = runner_energies(&at);
+    if (self->mechanism != NULL) {
+        mct_plant_evaluate(self->mechanism, &at);
+        result->energy = runner_energies(&at);
+        result->has_energy = true;
+    }
     fill_state(self, result);
+    fill_can(self, result);
 }
 
 static mct_status execute(run *self, run_result *result, mct_message *why)
 {
     const mct_hal *hal = &self->loop.hal;
     mct_evaluation at;
-    mct_plant_evaluate(&self->sim.plant, &at);
-    result->energy_start = runner_energies(&at);
+    if (self->mechanism != NULL) {
+        mct_plant_evaluate(self->mechanism, &at);
+        result->energy_start = runner_energies(&at);
+    }
     self->started_ns = now_ns();
-    const mct_status status = hal->ops->open(hal->context);
+    const mct_status status = hal->ops->open(hal->context, why);
     if (status == MCT_OK) {
+        self->drive.held = false; /* from here on each tick moves it */
+        if (hal->context == &self->can && self->options->started != NULL) {
+            self->options->started(&self->can.report);
+        }
         run_ticks(self);
         hal->ops->stop(hal->context);
         fill_timing(self, result);
         hal->ops->close(hal->context);
         fill_result(self, result);
     } else {
-        mct_message_add(why, "scene.hal: ");
-        mct_message_add(why, hal->ops->name);
-        mct_message_add(why, " could not be opened");
     }
     return status;
 }
@@ -519,6 +638,7 @@ mct_status runner_run(const mct_scene *scene, const run_options *options, run_re
         discard_log(self);
     }
     free(self->rows);
+    free(self->log_text);
     free(self);
     return status;
 }

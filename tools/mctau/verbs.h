@@ -8,5 +8,6 @@ extern const verb verb_list;
 extern const verb verb_run;
 extern const verb verb_mct;
 extern const verb verb_replay;
+extern const verb verb_drive;
 
 #endif

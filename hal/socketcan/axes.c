@@ -1,0 +1,146 @@
+#include "hal/socketcan/axes.h"
+
+#include <string.h>
+
+#include "mctau/constants.h"
+#include "mctau/scene.h"
+
+#define TURN 6.283185307179586476925
+
+static mct_status refuse(mct_message *why, const char *key, const char *found, const char *allowed)
+{
+    mct_message_clear(why);
+    mct_message_add(why, "can.");
+    mct_message_add(why, key);
+    mct_message_add(why, ": found ");
+    mct_message_add(why, found);
+    mct_message_add(why, "; allowed ");
+    mct_message_add(why, allowed);
+    return MCT_ERROR_UNSUITED;
+}
+
+static mct_status check_mode(const mct_scene *scene, mct_message *why)
+{
+    if (scene->can_mode == MCT_CAN_MODE_FOC && scene->can_protocol != MCT_CAN_VESC) {
+        return refuse(why, "mode", "\"foc\", which a vesc alone has", "voltage, or protocol = \"vesc\"");
+    }
+    if (scene->can_mode == MCT_CAN_MODE_TORQUE && scene->can_protocol != MCT_CAN_ODRIVE) {
+        return refuse(why, "mode", "\"torque\", which an odrive alone has", "voltage, or protocol = \"odrive\"");
+    }
+    return MCT_OK;
+}
+
+/* The motor by the turns of its drive's encoder. */
+static mct_status describe_motor(const mct_scene *scene, mct_can_motor *motor, mct_message *why)
+{
+    const mct_system *system = mct_systems[scene->system];
+    const int driven = system->driven_coordinate;
+    mct_constants constants;
+    if (!(scene->effects & MCT_MOTOR) || system->motor == NULL) {
+        mct_message_clear(why);
+        mct_message_add(why, "scene.hal: found a CAN bus with effects.motor off; allowed a motor, since a drive is "
+                             "told volts");
+        return MCT_ERROR_UNSUITED;
+    }
+    const mct_status status = system->prepare(scene, scene->dt, &constants, why);
+    if (status != MCT_OK) {
+        return status;
+    }
+    const mct_motor *windings = system->motor(&constants);
+    const double ratio = scene->can_encoder_ratio[driven];
+    const double unit = (system->coordinates[driven].is_angle ? TURN : 1) / (ratio < 0 ? -ratio : ratio);
+    motor->supply = scene->parameters[system->supply_parameter];
+    motor->resistance = scene->parameters[system->resistance_parameter];
+    motor->emf_per_turn = (double)windings->emf * unit;
+    motor->torque_per_ampere = (double)windings->force_per_ampere * unit / TURN;
+    motor->inverted = scene->can_inverted != 0;
+    return MCT_OK;
+}
+
+/* Number of the drive that reads an encoder. */
+static int32_t node_of(const mct_scene *scene, const mct_can_protocol *protocol, int coordinate)
+{
+    const mct_system *system = mct_systems[scene->system];
+    const int32_t given = scene->can_encoder_node[coordinate];
+    const bool with_motor = coordinate == system->driven_coordinate || protocol->has_spare;
+    return given >= 0 ? given : with_motor ? scene->can_node : scene->can_node + 1;
+}
+
+static mct_can_axis *axis_of_node(mct_can_axes *axes, uint8_t node)
+{
+    for (int i = 0; i < axes->count; i++) {
+        if (axes->axes[i].node == node) {
+            return &axes->axes[i];
+        }
+    }
+    mct_can_axis *axis = &axes->axes[axes->count++];
+    axis->node = node;
+    return axis;
+}
+
+static mct_status place_encoder(mct_can_axes *axes, const mct_scene *scene, int coordinate, mct_message *why)
+{
+    const mct_coordinate *described = &mct_systems[scene->system]->coordinates[coordinate];
+    const double ratio = scene->can_encoder_ratio[coordinate];
+    const int32_t node = node_of(scene, axes->protocol, coordinate);
+    if (ratio == 0) {
+        return refuse(why, described->encoder_ratio.name, "0", "any other number of turns");
+    }
+    if (node > 63) {
+        return refuse(why, described->encoder_node.name, "64, the number behind can.node", "0 to 63");
+    }
+    mct_can_axis *axis = axis_of_node(axes, (uint8_t)node);
+    const int place = axis->encoders[0].used ? 1 : 0;
+    if (place == 1 && !axes->protocol->has_spare) {
+        return refuse(why, described->encoder_node.name, "the drive that reads the other encoder",
+                      "another one: such a drive reads its own encoder only");
+    }
+    mct_can_encoder *encoder = &axis->encoders[place];
+    encoder->used = true;
+    encoder->coordinate = coordinate;
+    encoder->counts_per_turn = scene->counts_per_unit[coordinate] / ratio;
+    axis->roles |= place == 0 ? MCT_CAN_OF_ENCODER : MCT_CAN_OF_SPARE;
+    return MCT_OK;
+}
+
+mct_status mct_can_axes_init(mct_can_axes *axes, const mct_scene *scene, mct_message *why)
+{
+    const mct_system *system = mct_systems[scene->system];
+    const int driven = system->driven_coordinate;
+    memset(axes, 0, sizeof *axes);
+    axes->protocol = mct_can_protocols[scene->can_protocol];
+    mct_status status = check_mode(scene, why);
+    if (status == MCT_OK) {
+        axis_of_node(axes, (uint8_t)scene->can_node)->roles = MCT_CAN_OF_MOTOR;
+        /* A drive's own encoder is that of its motor. */
+        status = place_encoder(axes, scene, driven, why);
+    }
+    for (int i = 0; i < system->coordinate_count && status == MCT_OK; i++) {
+        if (i != driven) {
+            status = place_encoder(axes, scene, i, why);
+        }
+    }
+    if (status == MCT_OK) {
+        status = describe_motor(scene, &axes->axes[0].motor, why);
+    }
+    for (int i = 0; i < axes->count; i++) {
+        axes->axes[i].protocol = axes->protocol;
+        axes->axes[i].scene = scene;
+    }
+    return status;
+}
+
+mct_can_encoder *mct_can_encoder_of(mct_can_axes *axes, int coordinate, mct_can_axis **axis)
+{
+    for (int i = 0; i < axes->count; i++) {
+        for (int j = 0; j < MCT_CAN_ENCODERS; j++) {
+            mct_can_encoder *encoder = &axes->axes[i].encoders[j];
+            if (encoder->used && encoder->coordinate == coordinate) {
+                *axis = &axes->axes[i];
+                return encoder;
+            }
+        }
+    }
+    *axis = NULL;
+    return NULL;
+}
