@@ -5,6 +5,9 @@
 #include <string.h>
 
 #include "hal/sim/sim.h"
+#include "hal/socketcan/can.h"
+#include "hal/socketcan/drive.h"
+#include "hal/socketcan/ring.h"
 #include "mctau/loop.h"
 #include "support/swing_up.h"
 #include "unity.h"
@@ -97,6 +100,38 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void)
     }
 }
 
+/* Both ends of the bus, start included. */
+static void test_a_run_over_a_bus_uses_no_heap(void)
+{
+    static mct_loop loop;
+    static mct_can can;
+    static mct_can_drive drive;
+    static mct_can_ring bus;
+    for (int32_t protocol = MCT_CAN_NATIVE; protocol <= MCT_CAN_ODRIVE; protocol++) {
+        mct_scene scene = swing_up_scene(1);
+        scene.can_protocol = protocol;
+        calls = 0;
+        mct_can_ring_init(&bus);
+        mct_status status = mct_can_drive_init(&drive, &scene, mct_can_ring_end(&bus, 1), NULL);
+        mct_can_drive_serve(&drive, &bus);
+        status = status == MCT_OK ? mct_can_drive_open(&drive, NULL) : status;
+        status = status == MCT_OK ? mct_can_init(&can, &scene, mct_can_ring_end(&bus, 0), true, NULL) : status;
+        const mct_hal hal = mct_can_hal(&can);
+        status = status == MCT_OK ? hal.ops->open(hal.context, NULL) : status;
+        status = status == MCT_OK ? mct_loop_init(&loop, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL)
+                                  : status;
+        for (int k = 0; k < 12000; k++) {
+            mct_loop_tick(&loop);
+        }
+        hal.ops->close(hal.context);
+        mct_can_drive_close(&drive);
+        const long counted = calls;
+        TEST_ASSERT_EQUAL_INT(MCT_OK, status);
+        TEST_ASSERT_EQUAL_INT(0, counted);
+        TEST_ASSERT_EQUAL_INT(MCT_MODE_BALANCE, loop.controller.mode);
+    }
+}
+
 int main(void)
 {
     const char *const sanitizers = getenv("MCTAU_SANITIZE");
@@ -108,5 +143,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_counter_sees_a_call);
     RUN_TEST(test_a_run_of_loop_and_sim_uses_no_heap);
+    RUN_TEST(test_a_run_over_a_bus_uses_no_heap);
     return UNITY_END();
 }

@@ -10,6 +10,9 @@
 #include <string.h>
 
 #include "hal/sim/sim.h"
+#include "hal/socketcan/can.h"
+#include "hal/socketcan/drive.h"
+#include "hal/socketcan/ring.h"
 #include "mctau/loop.h"
 #include "measure.h"
 
@@ -141,6 +144,71 @@ static void measure_ticks(const measure_effort *effort, int system, mct_mode mod
     }
 }
 
+/* --- ticks over a bus within the process: the loop, the host's end, the drive's end and its plant --- */
+
+typedef struct {
+    mct_scene scene;
+    mct_can_ring bus, bus_start;
+    mct_can_drive drive, drive_start;
+    mct_can can, can_start;
+    mct_loop loop, loop_start; /* all refer to one another: copies come back to their place */
+} bus_ticking;
+
+static void restart_bus(void *context)
+{
+    bus_ticking *self = context;
+    self->bus = self->bus_start;
+    self->drive = self->drive_start;
+    self->can = self->can_start;
+    self->loop = self->loop_start;
+}
+
+static void run_bus_ticks(void *context, long count)
+{
+    bus_ticking *self = context;
+    for (long k = 0; k < count; k++) {
+        mct_loop_tick(&self->loop);
+    }
+}
+
+static void measure_bus_ticks(const measure_effort *effort, int system, int32_t protocol)
+{
+    static bus_ticking self;
+    mct_message why;
+    char name[64];
+    memset(&self, 0, sizeof self);
+    mct_message_clear(&why);
+    mct_scene_defaults(&self.scene, system);
+    self.scene.controller = MCT_CONTROLLER_SWING_UP_BALANCE;
+    self.scene.can_protocol = protocol;
+    mct_can_ring_init(&self.bus);
+    mct_status status = mct_can_drive_init(&self.drive, &self.scene, mct_can_ring_end(&self.bus, 1), &why);
+    if (status == MCT_OK) {
+        mct_can_drive_serve(&self.drive, &self.bus);
+        status = mct_can_drive_open(&self.drive, &why);
+    }
+    status = status == MCT_OK ? mct_can_init(&self.can, &self.scene, mct_can_ring_end(&self.bus, 0), true, &why)
+                              : status;
+    const mct_hal hal = mct_can_hal(&self.can);
+    status = status == MCT_OK ? hal.ops->open(hal.context, &why) : status;
+    status = status == MCT_OK
+                 ? mct_loop_init(&self.loop, &self.scene, hal, NULL, (mct_samples){NULL, 0}, &why)
+                 : status;
+    if (status != MCT_OK) {
+        fail(mct_systems[system]->name, why.text);
+    }
+    run_bus_ticks(&self, 16);
+    self.bus_start = self.bus;
+    self.drive_start = self.drive;
+    self.can_start = self.can;
+    self.loop_start = self.loop;
+    snprintf(name, sizeof name, "bus %s %s", mct_systems[system]->name, self.can.axes.protocol->name);
+    measure(effort, name, run_bus_ticks, restart_bus, &self, SWING_UP_TICKS);
+    if (self.loop.supervisor.latched != 0) {
+        fail(name, "faulted");
+    }
+}
+
 int main(int argc, char **argv)
 {
     const measure_effort effort = measure_effort_of(argc, argv);
@@ -150,6 +218,9 @@ int main(int argc, char **argv)
         }
         measure_ticks(&effort, system, MCT_MODE_SWING_UP);
         measure_ticks(&effort, system, MCT_MODE_BALANCE);
+        for (int32_t protocol = MCT_CAN_NATIVE; protocol <= MCT_CAN_ODRIVE; protocol++) {
+            measure_bus_ticks(&effort, system, protocol);
+        }
     }
     return 0;
 }

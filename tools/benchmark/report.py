@@ -15,6 +15,7 @@ import sys
 
 GOAL_STEP = 80
 GOAL_TICK = 400
+GOAL_BUS = 1000  # more than the tick itself: receive, decode, encode, send
 PROGRAMS = {"double": "benchmark_f64", "float": "benchmark_f32", "mujoco": "benchmark_mujoco"}
 PEERS = {"mujoco": "MuJoCo (PyPI's mujoco, installed by tools/setup)"}
 # Each integrator of MuJoCo, and what stands beside it here.
@@ -112,6 +113,8 @@ def print_table(results, said, missing, about, core):
     rows("A plant step: bounds and checks as well", "plant ",
          lambda name: GOAL_STEP if name == "plant cart_pole rk4" else None)
     rows("A whole tick in lockstep, ring included", "tick ", lambda name: GOAL_TICK)
+    rows("The same over a bus, both ends of it", "bus ",
+         lambda name: GOAL_BUS)
 
     for program in missing:
         print(f"missing: {PEERS.get(program, program + ' precision, not built')}")
@@ -155,7 +158,7 @@ def main():
     difference = float(said.get("difference", 0))
     if given.json:
         json.dump({"schema": "mctau.bench/1", "unit": "ns", "machine": about, "core": core,
-                   "goals": {"plant cart_pole rk4": GOAL_STEP, "tick": GOAL_TICK},
+                   "goals": {"plant cart_pole rk4": GOAL_STEP, "tick": GOAL_TICK, "bus": GOAL_BUS},
                    "results": [{"program": program, "name": name, **summary}
                                for (program, name), summary in results.items()],
                    "mujoco": said, "missing": missing}, sys.stdout, indent=1)
