@@ -31,7 +31,7 @@ enum {
 
 /** What the sensors say at a tick. */
 typedef struct {
-    int32_t counts[MCT_MAX_COORDINATES]; /**< encoder counters as the hardware has them; they wrap */
+    int32_t counts[MCT_MAX_ENCODERS]; /**< encoder counters as the hardware has them; they wrap */
     uint32_t age_us;                     /**< time since the newest counts were captured */
     uint32_t flags;                      /**< MCT_READING_... */
 } mct_reading;

@@ -24,7 +24,7 @@
 #include "mctau_tick_t.h"
 
 enum {
-    TICK_SIZE = 128 + 24 * MCT_MAX_COORDINATES + 16 * MCT_MAX_STATES, /* bytes of a tick_t, at most */
+    TICK_SIZE = 128 + 4 * MCT_MAX_COORDINATES + 20 * MCT_MAX_ENCODERS + 16 * MCT_MAX_STATES, /* bytes of a tick_t, at most */
     HEALTH_SIZE = 256 + 8 * (4 * (MCT_HISTOGRAM_BINS + 1) + MCT_FAULT_COUNT + MCT_MODE_COUNT + MCT_MAX_COUNTERS),
     EVENT_HEADER = 28,      /* bytes of a log's event before its channel */
     HEALTHS_PER_SCENE = 10, /* the scene is repeated every second */
@@ -137,10 +137,10 @@ static void copy_reals(const mct_real *from, int count, double *to)
 static void send_tick(mct_telemetry *self, const mct_record *record)
 {
     uint8_t data[TICK_SIZE];
-    double estimate[2 * MCT_MAX_COORDINATES];
+    double estimate[2 * MCT_MAX_ENCODERS];
     double x[MCT_MAX_STATES];
     double c[MCT_MAX_STATES];
-    copy_reals(record->estimate, 2 * self->coordinates, estimate);
+    copy_reals(record->estimate, 2 * self->encoders, estimate);
     copy_reals(record->plant.x, self->states, x);
     copy_reals(record->plant.c, self->states, c);
     const mctau_tick_t message = {
@@ -149,7 +149,8 @@ static void send_tick(mct_telemetry *self, const mct_record *record)
         .tick = (int64_t)record->tick,
         .coordinates = self->coordinates,
         .states = self->states,
-        .estimates = 2 * self->coordinates,
+        .encoders = self->encoders,
+        .estimates = 2 * self->encoders,
         .counts = (int32_t *)record->reading.counts,
         .age_us = record->reading.age_us,
         .flags = (int32_t)record->reading.flags,
@@ -364,7 +365,8 @@ static mct_status encode_scene(mct_telemetry *self, const char *text)
     for (int i = 0; i < self->counters.count; i++) {
         counters[i] = (char *)self->counters.counters[i].name;
     }
-    const char *unit = scene->effects & MCT_MOTOR ? "V" : system->input_without_motor->unit;
+    const mct_field *plain = system->input_without_motor;
+    const char *unit = scene->effects & MCT_MOTOR ? "V" : plain != NULL ? plain->unit : "";
     const mctau_scene_t message = {
         .version = MCT_TELEMETRY_VERSION,
         .precision = (char *)(MCT_REAL_IS_FLOAT ? "float" : "double"),
@@ -506,6 +508,7 @@ mct_status mct_telemetry_start(mct_telemetry *telemetry, mct_ring *ring, const m
     telemetry->timing = targets->timing;
     telemetry->counters = targets->counters;
     telemetry->coordinates = system->coordinate_count;
+    telemetry->encoders = mct_encoder_count(system);
     telemetry->states = mct_state_count(system, mct_scene_effects(scene));
     telemetry->health.period = (uint64_t)(health_period / scene->dt + 0.5);
     telemetry->health.period += telemetry->health.period == 0;

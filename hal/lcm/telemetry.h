@@ -85,7 +85,7 @@ typedef struct mct_telemetry {
     const mct_scene *scene;
     const mct_timing *timing;
     mct_counters counters;
-    int32_t coordinates, states;
+    int32_t coordinates, states, encoders;
     bool stopping; /**< set by mct_telemetry_stop, read by the thread */
     pthread_t thread;
     void *lcm; /**< lcm_t */

@@ -16,7 +16,7 @@ mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why)
         return status;
     }
     const mct_system *system = sim->plant.system;
-    for (int i = 0; i < system->coordinate_count; i++) {
+    for (int i = 0; i < mct_encoder_count(system); i++) {
         const double counts = scene->counts_per_unit[i];
         const bool angle = system->coordinates[i].is_angle;
         sim->turn_counts[i] = angle ? (double)(int64_t)(counts + 0.5) : 0;
@@ -61,7 +61,7 @@ static void sense(const mct_sim *sim, mct_reading *reading)
     const mct_plant *plant = &sim->plant;
     const mct_state *state = &plant->state;
     memset(reading, 0, sizeof *reading);
-    for (int i = 0; i < plant->system->coordinate_count; i++) {
+    for (int i = 0; i < mct_encoder_count(plant->system); i++) {
         double counts =
             ((double)state->x[i] + (double)state->c[i]) * sim->unit_counts[i] - sim->start_counts[i];
         if (sim->noise > 0) {

@@ -21,6 +21,12 @@ static mct_status refuse(mct_message *why, const char *key, const char *found, c
 
 static mct_status check_mode(const mct_scene *scene, mct_message *why)
 {
+    if (!(scene->effects & MCT_MOTOR)) {
+        mct_message_clear(why);
+        mct_message_add(why, "scene.hal: found a CAN bus with effects.motor off; allowed a motor, since a drive is "
+                             "told volts");
+        return MCT_ERROR_UNSUITED;
+    }
     if (scene->can_mode == MCT_CAN_MODE_FOC && scene->can_protocol != MCT_CAN_VESC) {
         return refuse(why, "mode", "\"foc\", which a vesc alone has", "voltage, or protocol = \"vesc\"");
     }
@@ -34,23 +40,17 @@ static mct_status check_mode(const mct_scene *scene, mct_message *why)
 static mct_status describe_motor(const mct_scene *scene, mct_can_motor *motor, mct_message *why)
 {
     const mct_system *system = mct_systems[scene->system];
-    const int driven = system->driven_coordinate;
+    const int driven = system->actuation->driven_coordinate;
     mct_constants constants;
-    if (!(scene->effects & MCT_MOTOR) || system->motor == NULL) {
-        mct_message_clear(why);
-        mct_message_add(why, "scene.hal: found a CAN bus with effects.motor off; allowed a motor, since a drive is "
-                             "told volts");
-        return MCT_ERROR_UNSUITED;
-    }
     const mct_status status = system->prepare(scene, scene->dt, &constants, why);
     if (status != MCT_OK) {
         return status;
     }
-    const mct_motor *windings = system->motor(&constants);
+    const mct_motor *windings = system->actuation->motor(&constants);
     const double ratio = scene->can_encoder_ratio[driven];
     const double unit = (system->coordinates[driven].is_angle ? TURN : 1) / (ratio < 0 ? -ratio : ratio);
-    motor->supply = scene->parameters[system->supply_parameter];
-    motor->resistance = scene->parameters[system->resistance_parameter];
+    motor->supply = scene->parameters[system->actuation->supply_parameter];
+    motor->resistance = scene->parameters[system->actuation->resistance_parameter];
     motor->emf_per_turn = (double)windings->emf * unit;
     motor->torque_per_ampere = (double)windings->force_per_ampere * unit / TURN;
     motor->inverted = scene->can_inverted != 0;
@@ -62,7 +62,7 @@ static int32_t node_of(const mct_scene *scene, const mct_can_protocol *protocol,
 {
     const mct_system *system = mct_systems[scene->system];
     const int32_t given = scene->can_encoder_node[coordinate];
-    const bool with_motor = coordinate == system->driven_coordinate || protocol->has_spare;
+    const bool with_motor = coordinate == system->actuation->driven_coordinate || protocol->has_spare;
     return given >= 0 ? given : with_motor ? scene->can_node : scene->can_node + 1;
 }
 
@@ -106,10 +106,10 @@ static mct_status place_encoder(mct_can_axes *axes, const mct_scene *scene, int 
 mct_status mct_can_axes_init(mct_can_axes *axes, const mct_scene *scene, mct_message *why)
 {
     const mct_system *system = mct_systems[scene->system];
-    const int driven = system->driven_coordinate;
     memset(axes, 0, sizeof *axes);
     axes->protocol = mct_can_protocols[scene->can_protocol];
     mct_status status = check_mode(scene, why);
+    const int driven = status == MCT_OK ? system->actuation->driven_coordinate : 0;
     if (status == MCT_OK) {
         axis_of_node(axes, (uint8_t)scene->can_node)->roles = MCT_CAN_OF_MOTOR;
         /* A drive's own encoder is that of its motor. */

@@ -8,7 +8,7 @@
 #include "hal/socketcan/protocol.h"
 #include "mctau/message.h"
 
-#define MCT_CAN_MAX_AXES (MCT_MAX_COORDINATES + 1)
+#define MCT_CAN_MAX_AXES (MCT_MAX_ENCODERS + 1)
 
 /** The drives of a mechanism: one, or one for each encoder and one for the motor. axes[0] powers the motor. */
 typedef struct {

@@ -51,8 +51,8 @@ typedef struct {
     mct_can_axes axes;
     /* what was heard */
     mct_reading reading;                    /**< last given */
-    uint32_t updates[MCT_MAX_COORDINATES];  /**< of each encoder, as last read */
-    uint64_t fresh_tick[MCT_MAX_COORDINATES]; /**< tick at which each encoder last had something new */
+    uint32_t updates[MCT_MAX_ENCODERS];  /**< of each encoder, as last read */
+    uint64_t fresh_tick[MCT_MAX_ENCODERS]; /**< tick at which each encoder last had something new */
     uint32_t restarts[MCT_CAN_MAX_AXES];    /**< of each drive, as last read */
     bool invalid, estop;                    /**< heard since the last read */
     mct_can_link_state link;

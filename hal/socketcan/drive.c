@@ -46,13 +46,13 @@ static double clamp(double value, double limit)
 
 static const mct_motor *windings(const mct_can_drive *self)
 {
-    return self->sim.plant.system->motor(&self->sim.plant.constants);
+    return self->sim.plant.system->actuation->motor(&self->sim.plant.constants);
 }
 
 static double back_emf(const mct_can_drive *self)
 {
     const mct_system *system = self->sim.plant.system;
-    const int rate = system->coordinate_count + system->driven_coordinate;
+    const int rate = system->coordinate_count + system->actuation->driven_coordinate;
     return (double)windings(self)->emf * mct_plant_value(&self->sim.plant, rate);
 }
 

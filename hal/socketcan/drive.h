@@ -103,8 +103,8 @@ typedef struct {
     bool was_held, calls_stop;
     uint64_t tick;                                          /**< since it went on the bus */
     mct_reading reading;                                    /**< of the sensors, at the present state */
-    double rates[MCT_MAX_LATENCY + 1][MCT_MAX_COORDINATES]; /**< as the sensors' queue [counts/s] */
-    double rate[MCT_MAX_COORDINATES];                       /**< as last sensed [counts/s] */
+    double rates[MCT_MAX_LATENCY + 1][MCT_MAX_ENCODERS]; /**< as the sensors' queue [counts/s] */
+    double rate[MCT_MAX_ENCODERS];                       /**< as last sensed [counts/s] */
     uint64_t fault_begin, fault_end;                        /**< [ticks of the mechanism] */
     int late_first, late_count;
     mct_can_late_frame late[MCT_CAN_MAX_DELAYED]; /**< a queue, in the order in which they were sent */

@@ -41,9 +41,9 @@ typedef struct mct_controller {
     uint32_t effects;
     mct_mode mode;
     mct_real limit;                             /**< largest input [V] */
-    mct_real gains[2 * MCT_MAX_COORDINATES];    /**< K */
-    mct_real travelled[MCT_MAX_COORDINATES];    /**< of a cyclic coordinate since balancing began */
-    mct_real unstable[2 * MCT_MAX_COORDINATES]; /**< w, scaled: |w'x| < 1 is what can be caught */
+    mct_real gains[2 * MCT_MAX_ENCODERS];    /**< K */
+    mct_real travelled[MCT_MAX_ENCODERS];    /**< of a cyclic coordinate since balancing began */
+    mct_real unstable[2 * MCT_MAX_ENCODERS]; /**< w, scaled: |w'x| < 1 is what can be caught */
     mct_real capture;
     mct_real energy_scale;       /**< 1 / (band * energy from hanging to upright) [1/J] */
     mct_real energy_shift;       /**< learned: added to the energy aimed at [J] */

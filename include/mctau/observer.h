@@ -37,13 +37,13 @@ typedef struct {
     mct_real h;
     mct_real keep;      /**< p^2 */
     mct_real rate_gain; /**< (1 - p)^2 / h [1/s] */
-    mct_encoder_track encoders[MCT_MAX_COORDINATES];
+    mct_encoder_track encoders[MCT_MAX_ENCODERS];
     /** Model's upright acceleration per sine of the angle; 0 when nothing is learned [rad/s^2]. */
     mct_real gravity_slope;
     mct_real gravity; /**< model's gravity at the last tick [rad/s^2] */
     mct_real excess;  /**< gravity acts (1 + excess) times as in the model; learned by the controller */
-    mct_real correction[MCT_MAX_COORDINATES]; /**< what the last reading added to the model's acceleration */
-    mct_real x[2 * MCT_MAX_COORDINATES];      /**< estimate: coordinates (angles within +-pi), rates */
+    mct_real correction[MCT_MAX_ENCODERS]; /**< what the last reading added to the model's acceleration */
+    mct_real x[2 * MCT_MAX_ENCODERS];      /**< estimate: coordinates (angles within +-pi), rates */
 } mct_observer;
 
 /**

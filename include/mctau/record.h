@@ -16,7 +16,7 @@ typedef struct {
     uint64_t tick;
     mct_state plant; /**< simulated state at the tick; zero on real hardware */
     mct_reading reading;
-    mct_real estimate[2 * MCT_MAX_COORDINATES]; /**< zero in open loop */
+    mct_real estimate[2 * MCT_MAX_ENCODERS]; /**< zero in open loop */
     mct_real wanted;                            /**< input asked for [V] */
     mct_real applied;                           /**< input let through [V] */
     mct_mode mode;

@@ -67,7 +67,7 @@ typedef struct mct_scene {
     double track_half_length; /**< [m] */
     double overspeed;         /**< [rad/s] */
     double rearm_after;       /**< [s]; 0: only when asked to */
-    double weights[2 * MCT_MAX_COORDINATES];
+    double weights[2 * MCT_MAX_ENCODERS];
     double input_weight;
     /* [input] */
     int32_t input;
@@ -76,7 +76,7 @@ typedef struct mct_scene {
     char input_file[MCT_MAX_TEXT];
     char input_column[MCT_MAX_TEXT];
     /* [sensors] */
-    double counts_per_unit[MCT_MAX_COORDINATES]; /**< per turn of an angle, per metre of a length */
+    double counts_per_unit[MCT_MAX_ENCODERS]; /**< per turn of an angle, per metre of a length */
     int32_t counter_bits;
     int32_t latency; /**< [ticks] */
     int32_t sensor_seed;
@@ -98,8 +98,8 @@ typedef struct mct_scene {
     int32_t can_lockstep;
     int32_t can_fault; /**< MCT_CAN_FAULT_... */
     double can_fault_time, can_fault_duration;        /**< [s] */
-    int32_t can_encoder_node[MCT_MAX_COORDINATES];    /**< drive that reads it; -1: see the key's doc */
-    double can_encoder_ratio[MCT_MAX_COORDINATES];    /**< drive's turns per turn or metre */
+    int32_t can_encoder_node[MCT_MAX_ENCODERS];    /**< drive that reads it; -1: see the key's doc */
+    double can_encoder_ratio[MCT_MAX_ENCODERS];    /**< drive's turns per turn or metre */
     /* [variation] */
     double variation_spread;
     int32_t variation_seed;

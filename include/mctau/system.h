@@ -17,8 +17,9 @@
 #include "mctau/real.h"
 #include "mctau/status.h"
 
-#define MCT_MAX_COORDINATES 2                             /**< of a system with a kernel */
+#define MCT_MAX_COORDINATES 3                             /**< of a system with a kernel */
 #define MCT_MAX_STATES      (2 * MCT_MAX_COORDINATES + 1) /**< coordinates, rates, current */
+#define MCT_MAX_ENCODERS    2 /**< coordinates of a system with a motor */
 #define MCT_MAX_PARAMETERS  24
 #define MCT_MAX_PARTICLES   4
 
@@ -56,8 +57,8 @@ typedef struct {
  */
 typedef struct {
     int states;                                                      /**< 2 n */
-    double A[(2 * MCT_MAX_COORDINATES) * (2 * MCT_MAX_COORDINATES)]; /**< row-major, states x states */
-    double B[2 * MCT_MAX_COORDINATES];
+    double A[(2 * MCT_MAX_ENCODERS) * (2 * MCT_MAX_ENCODERS)]; /**< row-major, states x states */
+    double B[2 * MCT_MAX_ENCODERS];
 } mct_linear_model;
 
 /**
@@ -101,6 +102,21 @@ typedef struct {
                                   "turns of the drive's encoder per " per " of " what                         \
                                   "; negative: mounted the other way round")
 
+/** What a controller and hardware have to know of a system with a motor. Each of its coordinates has an encoder. */
+typedef struct {
+    int driven_coordinate;    /**< the one that the motor acts on */
+    int upright_coordinate;   /**< the angle that is zero upright */
+    int supply_parameter;     /**< index of the supply voltage [V] */
+    int resistance_parameter; /**< of the motor's armature [ohm] */
+    int inductance_parameter; /**< of the motor's armature [H] */
+    /** Accelerations alone, for observers; coulomb is ignored, the motor taken as quasi-static unless off. */
+    void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
+                       mct_real *a);
+    void (*linearise)(const struct mct_scene *scene, mct_linear_model *model);
+    /** The motor among the constants. */
+    const mct_motor *(*motor)(const void *constants);
+} mct_actuation;
+
 typedef struct mct_system {
     const char *name;
     const char *doc;
@@ -114,11 +130,7 @@ typedef struct mct_system {
     uint32_t standard_effects;            /**< those that are on when a scene does not say */
     int particle_count;
     const char *const *particle_names;
-    int driven_coordinate;    /**< the one that the input acts on */
-    int upright_coordinate;   /**< the angle that is zero upright */
-    int supply_parameter;     /**< index of the supply voltage [V] */
-    int resistance_parameter; /**< of the motor's armature [ohm] */
-    int inductance_parameter; /**< of the motor's armature [H] */
+    const mct_actuation *actuation; /**< NULL for a system without a motor */
 
     /**
      * Checks a scene's parameters against each other and computes all constants, in double, for steps of h
@@ -128,17 +140,11 @@ typedef struct mct_system {
     /** M, C, tau, accelerations, constraint forces, energies and powers at x. */
     void (*evaluate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
                      mct_evaluation *out);
-    /** Accelerations alone, for observers; coulomb is ignored, the motor taken as quasi-static unless off. */
-    void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
-                       mct_real *a);
     /**
      * The geometry x = h(q) for the generic Gauss engine (an mct_gauss_place; the context is `constants`).
      */
     void (*place)(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
                   mct_hyperdual (*position)[3]);
-    void (*linearise)(const struct mct_scene *scene, mct_linear_model *model);
-    /** The motor among the constants; NULL for a system that has none. */
-    const mct_motor *(*motor)(const void *constants);
     /** Kernels by stepper and kernel mask; NULL where the pair does not fit. */
     mct_kernel (*kernel)(int stepper, uint32_t effects);
 } mct_system;
@@ -152,6 +158,9 @@ extern const mct_system *const mct_systems[MCT_SYSTEM_COUNT];
  * quasi-static one, which is its limit.
  */
 uint32_t mct_scene_effects(const struct mct_scene *scene);
+
+/** Number of encoders: those of a system with a motor. */
+int mct_encoder_count(const mct_system *system);
 
 /** Number of states of a system under an effect set: 2 n, plus the current of an inductive motor. */
 int mct_state_count(const mct_system *system, uint32_t effects);

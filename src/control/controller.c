@@ -8,7 +8,7 @@
 #include "mctau/sincos.h"
 
 #define LEARNING  MCT_R(0.5) /* fraction of a missed energy by which the next approach aims differently */
-#define MAX_MODEL (2 * MCT_MAX_COORDINATES)
+#define MAX_MODEL (2 * MCT_MAX_ENCODERS)
 
 /* The linear model, sampled: x+ = A x + B u. */
 typedef struct {
@@ -27,7 +27,7 @@ static mct_status sample(const mct_scene *scene, sampled_model *model)
 {
     const mct_system *system = mct_systems[scene->system];
     mct_linear_model full;
-    system->linearise(scene, &full);
+    system->actuation->linearise(scene, &full);
     /* e^[A B; 0 0]h = [A_sampled B_sampled; 0 1] */
     const int n = full.states;
     const int size = n + 1;
@@ -136,7 +136,7 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
     mct_real x[MCT_MAX_STATES] = {0};
     system->evaluate(&controller->constants, controller->effects, x, 0, &upright);
     const double lift = 2 * (double)upright.potential_energy;
-    const int angle = system->upright_coordinate;
+    const int angle = system->actuation->upright_coordinate;
     const double inertia = (double)upright.M[angle][angle];
     const double frequency = mct_sqrt(0.5 * lift / inertia);
     controller->largest_shift = (mct_real)(scene->energy_band * lift);
@@ -155,9 +155,9 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
 static void prepare_learning(mct_controller *controller, const mct_scene *scene)
 {
     const mct_system *system = controller->system;
-    const int angle = system->upright_coordinate;
+    const int angle = system->actuation->upright_coordinate;
     mct_linear_model model;
-    system->linearise(scene, &model);
+    system->actuation->linearise(scene, &model);
     const double slope = model.A[(system->coordinate_count + angle) * model.states + angle];
     controller->observer.gravity_slope = (mct_real)slope;
     controller->information = (mct_real)(slope * slope * 5);
@@ -193,8 +193,8 @@ static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real w
 {
     const mct_system *system = controller->system;
     const mct_real *x = controller->observer.x;
-    const mct_real angle = x[system->upright_coordinate];
-    const mct_real rate = x[system->coordinate_count + system->upright_coordinate];
+    const mct_real angle = x[system->actuation->upright_coordinate];
+    const mct_real rate = x[system->coordinate_count + system->actuation->upright_coordinate];
     mct_real s, c;
     mct_sincos(angle, &s, &c);
     const mct_real direction = power_per_input > controller->still    ? 1
@@ -223,7 +223,7 @@ static void learn_gravity(mct_controller *controller)
     const mct_real gravity = observer->gravity;
     const mct_real information = controller->information + gravity * gravity;
     controller->information = information < controller->memory ? information : controller->memory;
-    const mct_real correction = observer->correction[controller->system->upright_coordinate];
+    const mct_real correction = observer->correction[controller->system->actuation->upright_coordinate];
     observer->excess =
         mct_clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
 }
@@ -269,10 +269,10 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
         kept_on_track(controller, x[0], x[2],
                       controller->swing_acceleration * pump - controller->track_stiffness * x[0] -
                           controller->track_damping * x[2]);
-    mct_real without[MCT_MAX_COORDINATES];
-    mct_real with_one_volt[MCT_MAX_COORDINATES];
-    controller->system->accelerate(&controller->constants, controller->effects, x, 0, without);
-    controller->system->accelerate(&controller->constants, controller->effects, x, 1, with_one_volt);
+    mct_real without[MCT_MAX_ENCODERS];
+    mct_real with_one_volt[MCT_MAX_ENCODERS];
+    controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 0, without);
+    controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 1, with_one_volt);
     return (wanted - without[0]) / (with_one_volt[0] - without[0]);
 }
 
@@ -308,7 +308,7 @@ mct_status mct_controller_init(mct_controller *controller, const mct_scene *scen
         mct_message_add(why, system->name);
         return MCT_ERROR_UNSUITED;
     }
-    const double limit = scene->parameters[system->supply_parameter];
+    const double limit = scene->parameters[system->actuation->supply_parameter];
     controller->limit = (mct_real)limit;
     mct_status status = system->prepare(scene, scene->dt, &controller->constants, why);
     if (status != MCT_OK) {
@@ -344,7 +344,7 @@ static mct_real balance(mct_controller *controller)
 {
     const mct_system *system = controller->system;
     const int n = system->coordinate_count;
-    mct_real x[2 * MCT_MAX_COORDINATES];
+    mct_real x[2 * MCT_MAX_ENCODERS];
     memcpy(x, controller->observer.x, sizeof x);
     for (int i = 0; i < n; i++) {
         if (system->coordinates[i].is_cyclic) {
@@ -370,7 +370,7 @@ mct_real mct_controller_update(mct_controller *controller, const mct_reading *re
     }
     const mct_real reach = mct_controller_reach(controller);
     mct_real s, c;
-    mct_sincos(controller->observer.x[controller->system->upright_coordinate], &s, &c);
+    mct_sincos(controller->observer.x[controller->system->actuation->upright_coordinate], &s, &c);
     if (controller->mode == MCT_MODE_BALANCE) {
         if (reach > 1 || c < MCT_R(0.8)) {
             controller->mode = MCT_MODE_SWING_UP;

@@ -82,10 +82,10 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
         }
         return;
     }
-    mct_real a[MCT_MAX_COORDINATES];
-    observer->system->accelerate(observer->constants, observer->effects, observer->x, input, a);
+    mct_real a[MCT_MAX_ENCODERS];
+    observer->system->actuation->accelerate(observer->constants, observer->effects, observer->x, input, a);
     if (observer->gravity_slope > 0) {
-        const int upright = observer->system->upright_coordinate;
+        const int upright = observer->system->actuation->upright_coordinate;
         mct_real s, c;
         mct_sincos(observer->x[upright], &s, &c);
         observer->gravity = observer->gravity_slope * s;

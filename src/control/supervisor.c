@@ -53,7 +53,7 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene)
     supervisor->limit = MCT_REAL_MAX;
     supervisor->watch_limit = MCT_REAL_MAX;
     if (scene->effects & MCT_MOTOR) {
-        const double supply = scene->parameters[system->supply_parameter];
+        const double supply = scene->parameters[system->actuation->supply_parameter];
         supervisor->steps_per_volt = supervisor->observed ? MCT_STEPS_PER_VOLT : 0;
         if (scene->effects & MCT_SATURATION) {
             const double whole = (double)(int64_t)(supply * MCT_STEPS_PER_VOLT + 1e-6);
@@ -101,7 +101,7 @@ static void watch_estimate(mct_supervisor *supervisor, const mct_real *estimate)
 {
     const mct_system *system = supervisor->system;
     const int n = system->coordinate_count;
-    const int driven = system->driven_coordinate;
+    const int driven = system->actuation->driven_coordinate;
     for (int i = 0; i < 2 * n; i++) {
         if (!mct_finite(estimate[i])) {
             mct_supervisor_fault(supervisor, MCT_FAULT_ESTIMATE);
@@ -123,7 +123,8 @@ static void watch_estimate(mct_supervisor *supervisor, const mct_real *estimate)
  */
 static void watch_motion(mct_supervisor *supervisor, const mct_reading *reading, mct_real wanted)
 {
-    const int32_t counts = reading->counts[supervisor->system->driven_coordinate];
+    const mct_actuation *actuation = supervisor->system->actuation;
+    const int32_t counts = actuation != NULL ? reading->counts[actuation->driven_coordinate] : 0;
     const bool driven = supervisor->armed && size_of(wanted) > supervisor->watch_limit;
     supervisor->frozen_ticks = driven && counts == supervisor->last_counts ? supervisor->frozen_ticks + 1 : 0;
     supervisor->last_counts = counts;

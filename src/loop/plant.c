@@ -81,7 +81,7 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
     }
     const bool bounded = (plant->effects & MCT_SATURATION) && (plant->effects & MCT_MOTOR);
     plant->substeps = scene->substeps;
-    plant->bound = bounded ? (mct_real)scene->parameters[plant->system->supply_parameter] : MCT_REAL_MAX;
+    plant->bound = bounded ? (mct_real)scene->parameters[plant->system->actuation->supply_parameter] : MCT_REAL_MAX;
     mct_state_set(plant->system, mct_state_count(plant->system, plant->effects), scene->initial,
                   &plant->state);
     return plant->system->prepare(scene, scene->dt / scene->substeps, &plant->constants, why);
@@ -98,7 +98,7 @@ void mct_plant_step(mct_plant *plant, mct_real input)
     const mct_state before = plant->state;
     plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
     if (is_sane(&plant->state)) {
-        for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
+        for (int i = 0; i < plant->system->coordinate_count; i++) {
             if (plant->system->coordinates[i].is_angle) {
                 take_turns(&plant->state, i);
             }

@@ -177,10 +177,10 @@ int mct_key_count(int table, const mct_system *system)
     case MCT_TABLE_INITIAL:
         return mct_state_count(system, system->effects);
     case MCT_TABLE_WEIGHTS:
-        return 2 * system->coordinate_count;
+        return 2 * mct_encoder_count(system);
     default:
-        return mct_scene_tables[table].field_count + (table == TABLE_SENSORS ? system->coordinate_count
-                                                      : table == TABLE_CAN   ? 2 * system->coordinate_count
+        return mct_scene_tables[table].field_count + (table == TABLE_SENSORS ? mct_encoder_count(system)
+                                                      : table == TABLE_CAN   ? 2 * mct_encoder_count(system)
                                                                              : 0);
     }
 }
@@ -298,8 +298,8 @@ double mct_motor_stiffness(const mct_scene *scene)
         return 0;
     }
     const double h = scene->dt / scene->substeps;
-    return h * scene->parameters[system->resistance_parameter] /
-           scene->parameters[system->inductance_parameter];
+    return h * scene->parameters[system->actuation->resistance_parameter] /
+           scene->parameters[system->actuation->inductance_parameter];
 }
 
 bool mct_stepper_suits(const mct_scene *scene, int stepper)

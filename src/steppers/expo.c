@@ -4,7 +4,7 @@
 
 #include "mctau/matrix.h"
 
-#define SIZE (MCT_MAX_STATES + 4)
+#define SIZE (MCT_EXPO_STATES + 4)
 
 /*
  * e^(G) - 1 of the augmented generator of xdot = A x + B u + e (c0 + c1 s/h + c2 (s/h)^2): one column for the

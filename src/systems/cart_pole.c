@@ -428,6 +428,17 @@ static mct_kernel kernel(int stepper, uint32_t effects)
     return mct_kernel_of(kernels, stepper, effects);
 }
 
+static const mct_actuation actuation = {
+    .driven_coordinate = 0,
+    .upright_coordinate = 1,
+    .supply_parameter = SUPPLY_VOLTAGE,
+    .resistance_parameter = RESISTANCE,
+    .inductance_parameter = INDUCTANCE,
+    .accelerate = accelerate,
+    .linearise = linearise,
+    .motor = motor_of,
+};
+
 const mct_system mct_cart_pole = {
     .name = "cart_pole",
     .doc = "a pole on a cart: the classical inverted pendulum",
@@ -441,16 +452,9 @@ const mct_system mct_cart_pole = {
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC | MCT_SATURATION,
     .particle_count = 2,
     .particle_names = particle_names,
-    .driven_coordinate = 0,
-    .upright_coordinate = 1,
-    .supply_parameter = SUPPLY_VOLTAGE,
-    .resistance_parameter = RESISTANCE,
-    .inductance_parameter = INDUCTANCE,
+    .actuation = &actuation,
     .prepare = prepare,
     .evaluate = evaluate,
-    .accelerate = accelerate,
     .place = place,
-    .linearise = linearise,
-    .motor = motor_of,
     .kernel = kernel,
 };

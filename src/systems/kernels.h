@@ -44,7 +44,7 @@
                                              int32_t steps)                                                \
     {                                                                                                      \
         const constants_t *k = constants;                                                                  \
-        mct_advance(stepper##_increments, friction, k, remainder, (motor) + (others), MCT_MAX_COORDINATES, \
+        mct_advance(stepper##_increments, friction, k, remainder, (motor) + (others), MCT_MAX_ENCODERS, \
                     state, u, steps);                                                                      \
     }
 

@@ -446,6 +446,17 @@ static mct_kernel kernel(int stepper, uint32_t effects)
     return mct_kernel_of(kernels, stepper, effects);
 }
 
+static const mct_actuation actuation = {
+    .driven_coordinate = 1,
+    .upright_coordinate = 0,
+    .supply_parameter = SUPPLY_VOLTAGE,
+    .resistance_parameter = RESISTANCE,
+    .inductance_parameter = INDUCTANCE,
+    .accelerate = accelerate,
+    .linearise = linearise,
+    .motor = motor_of,
+};
+
 const mct_system mct_reaction_wheel = {
     .name = "reaction_wheel",
     .doc = "an arm that a motor-driven wheel swings up and balances",
@@ -459,16 +470,9 @@ const mct_system mct_reaction_wheel = {
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE | MCT_SATURATION,
     .particle_count = 4,
     .particle_names = particle_names,
-    .driven_coordinate = 1,
-    .upright_coordinate = 0,
-    .supply_parameter = SUPPLY_VOLTAGE,
-    .resistance_parameter = RESISTANCE,
-    .inductance_parameter = INDUCTANCE,
+    .actuation = &actuation,
     .prepare = prepare,
     .evaluate = evaluate,
-    .accelerate = accelerate,
     .place = place,
-    .linearise = linearise,
-    .motor = motor_of,
     .kernel = kernel,
 };

@@ -39,12 +39,12 @@ int main(void)
         }
         const mct_system *const system = mct_systems[scene.system];
         mct_linear_model model;
-        system->linearise(&scene, &model);
-        double gains[2 * MCT_MAX_COORDINATES];
+        system->actuation->linearise(&scene, &model);
+        double gains[2 * MCT_MAX_ENCODERS];
         for (int i = 0; i < model.states; i++) {
             gains[i] = (double)controller.gains[i];
         }
-        const double limit = scene.parameters[system->supply_parameter];
+        const double limit = scene.parameters[system->actuation->supply_parameter];
         printf("{");
         print_numbers("A", model.A, model.states * model.states);
         print_numbers("B", model.B, model.states);

@@ -42,7 +42,7 @@ static void test_the_linear_model_is_the_slope_of_the_accelerations(void)
         mct_constants constants;
         mct_linear_model model;
         TEST_ASSERT_EQUAL_INT(MCT_OK, system->prepare(&scene, scene.dt, &constants, NULL));
-        system->linearise(&scene, &model);
+        system->actuation->linearise(&scene, &model);
         TEST_ASSERT_EQUAL_INT(STATES, model.states);
         for (int j = 0; j <= STATES; j++) {
             const double step = 1e-5;
@@ -76,7 +76,7 @@ static sampled sample(const mct_scene *scene)
 {
     enum { SIZE = STATES + 1 };
     mct_linear_model model;
-    mct_systems[scene->system]->linearise(scene, &model);
+    mct_systems[scene->system]->actuation->linearise(scene, &model);
     double generator[SIZE * SIZE] = {0};
     double flow[SIZE * SIZE];
     sampled result;
@@ -147,7 +147,7 @@ static void test_inside_the_region_full_input_catches_and_outside_it_does_not(vo
         double towards[STATES] = {0};
         advance(&model, towards, 1);
         const double push = reach(&controller, towards); /* of one volt on z */
-        const double limit = scene.parameters[mct_systems[scene.system]->supply_parameter];
+        const double limit = scene.parameters[mct_systems[scene.system]->actuation->supply_parameter];
         for (int side = 0; side < 2; side++) {
             const bool inside = side == 0;
             double x[STATES];
@@ -200,7 +200,7 @@ static void test_modes_have_names(void)
 static void test_a_controller_waits_swings_up_balances_and_begins_again(void)
 {
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
-        const int upright = mct_systems[system]->upright_coordinate;
+        const int upright = mct_systems[system]->actuation->upright_coordinate;
         mct_scene scene = swing_up_scene(system);
         mct_controller controller;
         mct_reading reading;

@@ -11,7 +11,7 @@
 
 static mct_supervisor gate;
 static mct_reading reading;
-static mct_real estimate[2 * MCT_MAX_COORDINATES];
+static mct_real estimate[2 * MCT_MAX_ENCODERS];
 
 static void start(int system)
 {

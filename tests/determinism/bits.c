@@ -58,31 +58,52 @@ static uint64_t with_reals(uint64_t hash, const mct_real *values, size_t count)
     return hash;
 }
 
-static uint64_t with_state(uint64_t hash, const mct_state *state)
+static uint64_t with_state(uint64_t hash, const mct_system *system, const mct_state *state)
 {
-    hash = with_reals(hash, state->x, MCT_MAX_STATES);
-    hash = with_reals(hash, state->c, MCT_MAX_STATES);
-    for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
+    const size_t states = (size_t)mct_state_count(system, system->effects);
+    hash = with_reals(hash, state->x, states);
+    hash = with_reals(hash, state->c, states);
+    for (int i = 0; i < system->coordinate_count; i++) {
         hash = with(hash, (uint32_t)state->turns[i]);
     }
     return hash;
 }
 
+/* The matrices as far as two coordinates, all else as long as it is. */
 static uint64_t with_evaluation(uint64_t hash, const mct_evaluation *at)
 {
-    mct_real all[sizeof *at / sizeof(mct_real)]; /* nothing but mct_real is in it */
-    memcpy(all, at, sizeof *at);
-    return with_reals(hash, all, sizeof all / sizeof all[0]);
+    enum { N = 2 };
+    for (int i = 0; i < N; i++) {
+        hash = with_reals(hash, at->M[i], N);
+    }
+    hash = with_reals(hash, &at->position[0][0], 3 * MCT_MAX_PARTICLES);
+    hash = with_reals(hash, at->mass, MCT_MAX_PARTICLES);
+    hash = with_real(hash, at->potential_energy);
+    for (int i = 0; i < N; i++) {
+        hash = with_reals(hash, at->C[i], N);
+    }
+    hash = with_reals(hash, at->Cv, N);
+    hash = with_real(hash, at->kinetic_energy);
+    hash = with_real(hash, at->magnetic_energy);
+    hash = with_reals(hash, at->tau, N);
+    hash = with_reals(hash, at->acceleration, N);
+    hash = with_real(hash, at->current);
+    hash = with_reals(hash, &at->constraint_force[0][0], 3 * MCT_MAX_PARTICLES);
+    hash = with_real(hash, at->power_input);
+    hash = with_real(hash, at->power_viscous);
+    hash = with_real(hash, at->power_coulomb);
+    hash = with_real(hash, at->power_resistance);
+    return with_real(hash, at->power_conversion);
 }
 
-static uint64_t with_record(uint64_t hash, const mct_record *record)
+static uint64_t with_record(uint64_t hash, const mct_system *system, const mct_record *record)
 {
-    hash = with_state(hash, &record->plant);
-    for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
+    hash = with_state(hash, system, &record->plant);
+    for (int i = 0; i < mct_encoder_count(system); i++) {
         hash = with(hash, (uint32_t)record->reading.counts[i]);
     }
     hash = with(hash, record->reading.flags);
-    hash = with_reals(hash, record->estimate, 2 * MCT_MAX_COORDINATES);
+    hash = with_reals(hash, record->estimate, 2 * (size_t)mct_encoder_count(system));
     hash = with_real(hash, record->wanted);
     hash = with_real(hash, record->applied);
     hash = with(hash, (uint64_t)record->mode);
@@ -133,23 +154,23 @@ static void prepare_scene(mct_scene *scene, int system, int stepper, uint32_t ef
     double *p = scene->parameters;
     scene->stepper = stepper;
     scene->effects = effects;
-    p[model->inductance_parameter] = 2e-3 * p[model->resistance_parameter];
+    p[model->actuation->inductance_parameter] = 2e-3 * p[model->actuation->resistance_parameter];
     for (int i = 0; i < model->parameter_count; i++) {
         const char *name = model->parameters[i].name;
         if (strstr(name, "coulomb") != NULL) {
             p[i] = strstr(name, "cart") != NULL ? 0.5 : 1e-3;
         }
     }
-    scene->initial[model->upright_coordinate] = 2;
+    scene->initial[model->actuation->upright_coordinate] = 2;
 }
 
 static double full_input(const mct_scene *scene)
 {
     const mct_system *model = mct_systems[scene->system];
     if (scene->effects & MCT_MOTOR) {
-        return scene->parameters[model->supply_parameter];
+        return scene->parameters[model->actuation->supply_parameter];
     }
-    return model->coordinates[model->driven_coordinate].is_angle ? 1e-3 : 1;
+    return model->coordinates[model->actuation->driven_coordinate].is_angle ? 1e-3 : 1;
 }
 
 static void print_kernels(int system, int stepper, const char *motor, uint32_t motor_effect)
@@ -171,7 +192,7 @@ static void print_kernels(int system, int stepper, const char *motor, uint32_t m
         }
         for (int tick = 0; tick < TICKS; tick++) {
             mct_plant_step(&plant, (mct_real)(amplitude * input_at(tick)));
-            hash = with_state(hash, &plant.state);
+            hash = with_state(hash, plant.system, &plant.state);
         }
         if (plant.diverged_ticks != 0) {
             fail(name, "diverged, so its hash would say little");
@@ -212,7 +233,7 @@ static void run_loop(const mct_scene *scene, const char *name, const char *varia
     const uint64_t ticks = (uint64_t)(scene->duration / scene->dt + 0.5);
     for (uint64_t tick = 0; tick < ticks; tick++) {
         mct_loop_tick(&loop);
-        hash = with_record(hash, &loop.record);
+        hash = with_record(hash, mct_systems[scene->system], &loop.record);
     }
     loop.hal.ops->close(loop.hal.context);
     printf("%s scene %s %s %s %016llx\n", precision, name, mct_steppers[scene->stepper].name, variant,

@@ -18,7 +18,7 @@ static mct_scene scene_with_motor(int system, int stepper, double resistance, do
     mct_scene scene = scene_of(system, stepper, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE);
     *parameter_of(&scene, "resistance") = resistance;
     *parameter_of(&scene, "inductance") = inductance;
-    scene.initial[mct_systems[system]->upright_coordinate] = 2;
+    scene.initial[mct_systems[system]->actuation->upright_coordinate] = 2;
     return scene;
 }
 
@@ -121,7 +121,7 @@ static void test_a_motor_without_resistance_is_finite_and_its_current_follows_th
             step_plant(&plant, 0, 2000);
             TEST_ASSERT_EQUAL_UINT64(0, plant.diverged_ticks);
             const double emf = system == CART_POLE ? 0.00767 * 3.71 / 0.00635 : 0.0274;
-            const int driven = mct_systems[system]->driven_coordinate;
+            const int driven = mct_systems[system]->actuation->driven_coordinate;
             const double way = mct_plant_value(&plant, driven) - scene.initial[driven];
             const double current = mct_plant_value(&plant, 4);
             TEST_ASSERT_TRUE(fabs(way) > 1e-3);

@@ -11,7 +11,7 @@ mct_scene fuzz_can_scene(int number)
 {
     static const struct {
         int32_t system, protocol, mode, firmware, inverted;
-        int32_t encoder_node[MCT_MAX_COORDINATES];
+        int32_t encoder_node[MCT_MAX_ENCODERS];
         double ratio;
     } all[FUZZ_CAN_SCENES] = {
         {REACTION_WHEEL, MCT_CAN_NATIVE, MCT_CAN_MODE_VOLTAGE, 0, 0, {-1, -1}, 1},
@@ -38,7 +38,7 @@ mct_scene fuzz_can_scene(int number)
     scene.can_firmware = all[i].firmware;
     scene.can_inverted = all[i].inverted;
     scene.can_highest_load = 10;
-    for (int j = 0; j < MCT_MAX_COORDINATES; j++) {
+    for (int j = 0; j < MCT_MAX_ENCODERS; j++) {
         scene.can_encoder_node[j] = all[i].encoder_node[j];
         scene.can_encoder_ratio[j] = all[i].ratio;
     }

@@ -25,9 +25,9 @@ enum { MOST_TICKS = 250, QUEUE = 64, KINDS = 8, FAULTS = MCT_CAN_FAULT_ERROR + 1
 
 /* What reading the bus has to come to. */
 typedef struct {
-    bool news[MCT_MAX_COORDINATES]; /* a frame with this encoder's counts since the last read */
-    int64_t newest_us[MCT_MAX_COORDINATES];
-    uint64_t fresh_tick[MCT_MAX_COORDINATES];
+    bool news[MCT_MAX_ENCODERS]; /* a frame with this encoder's counts since the last read */
+    int64_t newest_us[MCT_MAX_ENCODERS];
+    uint64_t fresh_tick[MCT_MAX_ENCODERS];
     bool estop, invalid, link_down; /* since the last write */
     bool ready;                     /* the motor's drive has said so since it was asked last */
     bool stopped;                   /* and not armed since */
@@ -351,7 +351,7 @@ static mct_status watched_read(void *context, mct_reading *reading)
     const mct_status status = mct_can_hal(context).ops->read(context, reading);
     FUZZ_RULE(status == MCT_OK, "a bus that fails is no HAL that fails");
     FUZZ_RULE((reading->flags & ~ALL_FLAGS) == 0, "flags are known: %x", reading->flags);
-    for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
+    for (int i = 0; i < MCT_MAX_ENCODERS; i++) {
         self.expected.fresh_tick[i] = self.expected.news[i] ? self.can.tick : self.expected.fresh_tick[i];
         self.expected.news[i] = false;
     }
@@ -491,7 +491,7 @@ static void start(int scene)
     self.before = self.can.counts;
     self.supervisor_before = self.loop.supervisor;
     self.received_before = self.can.counts.values[MCT_CAN_COUNT_RECEIVED];
-    for (int i = 0; i < MCT_MAX_COORDINATES; i++) {
+    for (int i = 0; i < MCT_MAX_ENCODERS; i++) {
         self.expected.fresh_tick[i] = self.can.tick;
         self.expected.newest_us[i] = self.ring.now_us;
     }

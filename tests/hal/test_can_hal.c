@@ -73,7 +73,7 @@ static void finish(void)
 
 static double angle(void)
 {
-    return angle_size((double)drive.sim.plant.state.x[drive.sim.plant.system->upright_coordinate]);
+    return angle_size((double)drive.sim.plant.state.x[drive.sim.plant.system->actuation->upright_coordinate]);
 }
 
 static void check_same_bits(int system, bool disturbed)

@@ -106,7 +106,7 @@ static void test_a_start_that_is_whole_turns_away_moves_the_same_way(void)
 {
     static const int turns[] = {1, -1, 5, -1000};
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
-        const int upright = mct_systems[system]->upright_coordinate;
+        const int upright = mct_systems[system]->actuation->upright_coordinate;
         mct_scene scene = scene_of(system, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_VISCOUS);
         scene.initial[upright] = 2;
         mct_plant home;
@@ -193,7 +193,7 @@ static void test_upright_exactly_stays_upright_for_1e6_ticks(void)
             if (mct_systems[system]->kernel(stepper, scene.effects) == NULL) {
                 continue;
             }
-            scene.initial[mct_systems[system]->upright_coordinate] = 0;
+            scene.initial[mct_systems[system]->actuation->upright_coordinate] = 0;
             mct_plant plant;
             start_plant(&plant, &scene);
             step_plant(&plant, 0, stepper == MCT_STEPPER_RK4 ? 1000000 : 100000);

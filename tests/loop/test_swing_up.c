@@ -51,7 +51,7 @@ static void test_the_swing_up_does_not_hang_on_stepper_or_motor_or_start(void)
             scene.stepper = k % 2 ? MCT_STEPPER_LEAP : MCT_STEPPER_RK4;
             scene.effects &= ~(uint32_t)MCT_MOTOR;
             scene.effects |= k % 2 ? MCT_MOTOR_INDUCTIVE : MCT_MOTOR_QUASI_STATIC;
-            scene.initial[mct_systems[system]->upright_coordinate] = starts[k];
+            scene.initial[mct_systems[system]->actuation->upright_coordinate] = starts[k];
             const swing_up run = run_swing_up(&scene, 30, 20);
             printf("%s from %g rad, %s: upright from %.3f s\n", mct_systems[system]->name, starts[k],
                    motor_name(scene.effects), run.upright_time);

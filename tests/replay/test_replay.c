@@ -200,7 +200,7 @@ static void test_any_bit_of_a_tick_that_is_flipped_is_named(void)
     static const span spans[] = {
         {"utime", 8},
         {"sequence", 8},
-        {"", 8 + 12},
+        {"", 8 + 16},
         {"counts.arm_angle", 4},
         {"counts.wheel_angle", 4},
         {"age_us", 8},
@@ -262,7 +262,7 @@ static void test_values_that_differ_are_told(void)
 {
     record(swing_up_scene, 50);
     size_t length;
-    const size_t applied = tick_data(20, &length) + 8 + 24 + 12 + 8 + 12 + 4 * 8 + 8;
+    const size_t applied = tick_data(20, &length) + 8 + 24 + 16 + 8 + 12 + 4 * 8 + 8;
     bytes[applied] ^= 0x80; /* its sign */
     write_file(size);
     TEST_ASSERT_EQUAL_INT(MCT_OK, runner_replay(path, &result, &why));

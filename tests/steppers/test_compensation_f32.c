@@ -42,7 +42,7 @@ static double error_after_10_s(const mct_scene *scene, bool compensated, const q
 static void check_compensation(int system, int stepper)
 {
     mct_scene scene = scene_of(system, stepper, MCT_GRAVITY | MCT_VISCOUS);
-    scene.initial[mct_systems[system]->upright_coordinate] = 2;
+    scene.initial[mct_systems[system]->actuation->upright_coordinate] = 2;
     const reference_model model = reference_of(&scene);
     quad end[REFERENCE_STATES];
     reference_start(&model, scene.initial, end);

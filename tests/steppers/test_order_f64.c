@@ -28,7 +28,7 @@ static mct_scene smooth_scene(int system, uint32_t effects, double time_constant
 {
     mct_scene scene = scene_of(system, MCT_STEPPER_RK4, effects);
     *parameter_of(&scene, "inductance") = time_constant * *parameter_of(&scene, "resistance");
-    scene.initial[mct_systems[system]->upright_coordinate] = 2;
+    scene.initial[mct_systems[system]->actuation->upright_coordinate] = 2;
     scene.initial[2] = 0.3;
     scene.initial[3] = -0.5;
     return scene;

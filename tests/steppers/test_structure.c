@@ -28,7 +28,7 @@ static void test_leap_returns_to_its_start_when_reversed(void)
 {
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         mct_scene scene = scene_of(system, MCT_STEPPER_LEAP, MCT_GRAVITY);
-        scene.initial[mct_systems[system]->upright_coordinate] = 2;
+        scene.initial[mct_systems[system]->actuation->upright_coordinate] = 2;
         scene.initial[3] = 0.5;
         mct_plant plant;
         start_plant(&plant, &scene);
@@ -119,7 +119,7 @@ static void test_rest_is_rest_to_the_last_bit_for_every_stepper_and_effect_set(v
                     continue;
                 }
                 mct_scene scene = scene_of(system, stepper, effects);
-                scene.initial[mct_systems[system]->upright_coordinate] = 0;
+                scene.initial[mct_systems[system]->actuation->upright_coordinate] = 0;
                 mct_plant plant;
                 start_plant(&plant, &scene);
                 step_plant(&plant, 0, 1000);

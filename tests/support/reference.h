@@ -21,7 +21,7 @@ typedef __float128 quad;
 typedef long double quad;
 #endif
 
-enum { REFERENCE_STATES = MCT_MAX_STATES, REFERENCE_NODES = 8, REFERENCE_WINDOWS = 24 };
+enum { REFERENCE_STATES = MCT_EXPO_STATES, REFERENCE_NODES = 8, REFERENCE_WINDOWS = 24 };
 
 typedef struct {
     int system;

@@ -29,7 +29,7 @@ swing_up run_swing_up(const mct_scene *scene, double duration, double settled)
     TEST_ASSERT_EQUAL_INT_MESSAGE(
         MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context, NULL));
-    const int upright = sim.plant.system->upright_coordinate;
+    const int upright = sim.plant.system->actuation->upright_coordinate;
     swing_up result = {.upright_time = INFINITY, .reached_time = INFINITY};
     const long ticks = lround(duration / scene->dt);
     for (long k = 1; k <= ticks; k++) {

@@ -394,7 +394,7 @@ static void test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_t
         system->evaluate(&constants, scene.effects, x, 1, &out);
         reference_rate(&model, exact_x, 1, rate);
         mct_real alone[N];
-        system->accelerate(&constants, scene.effects, x, 1, alone);
+        system->actuation->accelerate(&constants, scene.effects, x, 1, alone);
         for (int i = 0; i < N; i++) {
             const double exact = (double)rate[N + i];
             const double tolerance = 50 * (double)MCT_REAL_EPSILON;

@@ -72,7 +72,7 @@ static double gap_of(mct_scene scene, double dt, bool print)
 static mct_scene scene_with(int system, uint32_t effects)
 {
     mct_scene scene = scene_of(system, system == CART_POLE ? MCT_STEPPER_RK4 : MCT_STEPPER_EXPO, effects);
-    scene.initial[mct_systems[system]->upright_coordinate] = 2.5;
+    scene.initial[mct_systems[system]->actuation->upright_coordinate] = 2.5;
     *parameter_of(&scene, "inductance") = 0.05 * *parameter_of(&scene, "resistance");
     *parameter_of(&scene, "back_emf_constant") *= 0.8; /* so that conversion has something to say */
     return scene;

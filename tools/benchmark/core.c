@@ -61,10 +61,10 @@ static void measure_steps(const measure_effort *effort, int system, int stepper)
     mct_scene_defaults(&scene, system);
     const mct_system *model = mct_systems[system];
     const double *p = scene.parameters;
-    const double rate = p[model->resistance_parameter] / p[model->inductance_parameter];
+    const double rate = p[model->actuation->resistance_parameter] / p[model->actuation->inductance_parameter];
     const double limit = mct_steppers[stepper].motor_stability_limit;
     scene.stepper = stepper;
-    scene.initial[model->upright_coordinate] = 2;
+    scene.initial[model->actuation->upright_coordinate] = 2;
     while ((scene.effects & MCT_MOTOR_INDUCTIVE) && limit > 0 && scene.dt * rate > 0.9 * limit) {
         scene.dt /= 2; /* the cost of a step does not depend on its length */
     }

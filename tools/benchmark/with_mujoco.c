@@ -59,7 +59,7 @@ static void describe(mct_scene *scene)
     }
     mct_scene_defaults(scene, system);
     scene->effects = MCT_GRAVITY | MCT_VISCOUS;
-    scene->initial[mct_systems[system]->upright_coordinate] = START;
+    scene->initial[mct_systems[system]->actuation->upright_coordinate] = START;
 }
 
 static void restart_ours(void *context)

@@ -129,9 +129,14 @@ static void json_system(json *out, const mct_system *system)
         json_coordinate(out, &system->coordinates[i]);
     }
     json_end_list(out);
-    json_text(out, "driven_coordinate", system->coordinates[system->driven_coordinate].position.name);
-    json_text(out, "upright_coordinate", system->coordinates[system->upright_coordinate].position.name);
-    json_quantity(out, "input_without_motor", system->input_without_motor);
+    if (system->actuation != NULL) {
+        const mct_coordinate *coordinates = system->coordinates;
+        json_text(out, "driven_coordinate", coordinates[system->actuation->driven_coordinate].position.name);
+        json_text(out, "upright_coordinate", coordinates[system->actuation->upright_coordinate].position.name);
+    }
+    if (system->input_without_motor != NULL) {
+        json_quantity(out, "input_without_motor", system->input_without_motor);
+    }
     json_list(out, "parameters");
     for (int i = 0; i < system->parameter_count; i++) {
         json_quantity(out, NULL, &system->parameters[i]);
@@ -294,17 +299,8 @@ static void print_effects(const mct_system *system)
     }
 }
 
-static void print_system(const mct_system *system)
+static void print_encoders(const mct_system *system)
 {
-    printf("%s: %s (source %s)\n", system->name, system->doc, system->source);
-    print_heading("[initial]");
-    for (int i = 0; i < mct_state_count(system, system->effects); i++) {
-        print_quantity(mct_state_field(system, i));
-    }
-    print_heading("[parameters]");
-    for (int i = 0; i < system->parameter_count; i++) {
-        print_quantity(&system->parameters[i]);
-    }
     print_heading("[sensors]");
     for (int i = 0; i < system->coordinate_count; i++) {
         print_quantity(&system->coordinates[i].encoder);
@@ -317,12 +313,41 @@ static void print_system(const mct_system *system)
                field->name, field->unit,
                i < system->coordinate_count ? coordinate->position_weight : coordinate->rate_weight);
     }
+}
+
+static void print_input(const mct_system *system)
+{
+    const mct_field *plain = system->input_without_motor;
+    if (system->actuation != NULL) {
+        printf("\nInput: a voltage [V]; with motor = \"off\" a %s [%s], %s\n", plain->name, plain->unit,
+               plain->doc);
+        printf("Driven: %s. Upright: %s = 0. ",
+               system->coordinates[system->actuation->driven_coordinate].position.name,
+               system->coordinates[system->actuation->upright_coordinate].position.name);
+    } else if (plain != NULL) {
+        printf("\nInput: a %s [%s], %s\n", plain->name, plain->unit, plain->doc);
+    } else {
+        printf("\nInput: none\n");
+    }
+}
+
+static void print_system(const mct_system *system)
+{
+    printf("%s: %s (source %s)\n", system->name, system->doc, system->source);
+    print_heading("[initial]");
+    for (int i = 0; i < mct_state_count(system, system->effects); i++) {
+        print_quantity(mct_state_field(system, i));
+    }
+    print_heading("[parameters]");
+    for (int i = 0; i < system->parameter_count; i++) {
+        print_quantity(&system->parameters[i]);
+    }
+    if (system->actuation != NULL) {
+        print_encoders(system);
+    }
     print_effects(system);
-    printf("\nInput: a voltage [V]; with motor = \"off\" a %s [%s], %s\n", system->input_without_motor->name,
-           system->input_without_motor->unit, system->input_without_motor->doc);
-    printf("Driven: %s. Upright: %s = 0. Particles:",
-           system->coordinates[system->driven_coordinate].position.name,
-           system->coordinates[system->upright_coordinate].position.name);
+    print_input(system);
+    printf("Particles:");
     for (int i = 0; i < system->particle_count; i++) {
         printf(" %s", system->particle_names[i]);
     }

@@ -139,7 +139,7 @@ static void print_state(const scene_file *file, const mct_result *at)
         printf("  %-18s %14.8g %s\n", at->names[i], at->state[i], at->units[i]);
     }
     printf("  %-18s %14.8g %s\n", has_motor ? "(input) voltage" : "(input)", at->input,
-           has_motor ? "V" : system->input_without_motor->unit);
+           has_motor ? "V" : system->input_without_motor != NULL ? system->input_without_motor->unit : "");
 }
 
 /* M and C, with the unit that turns a column's acceleration or velocity into the row's force. */

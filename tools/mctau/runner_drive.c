@@ -228,10 +228,13 @@ static mct_status prepare(drive_run *self, mct_message *why)
         mct_can_socket_transport(&self->socket, self->options->interface, (uint32_t)scene->can_bitrate);
     self->ticks = self->options->has_duration ? (uint64_t)(scene->duration / scene->dt + 0.5) : never;
     self->tick_us = scene->dt < 1e-6 ? 1 : (int64_t)(scene->dt * 1e6 + 0.5);
-    self->upright = mct_systems[scene->system]->upright_coordinate;
     self->last_outside = never;
     self->least_deviation = TURN;
     mct_status status = mct_can_drive_init(&self->drive, scene, bus, why);
+    if (status != MCT_OK) {
+        return status;
+    }
+    self->upright = mct_systems[scene->system]->actuation->upright_coordinate;
     self->reader = *plant_of(self);
     return status != MCT_OK ? status : open_csv(self, why);
 }

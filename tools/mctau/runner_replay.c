@@ -313,7 +313,7 @@ static void compare_tick(replay *self)
         compare_reals(self, "state", recorded->states, recorded->x, record->plant.x);
         compare_reals(self, "compensation", recorded->states, recorded->c, record->plant.c);
         compare_integers(self, "turns", coordinates, recorded->turns, record->plant.turns);
-        compare_integers(self, "counts", coordinates, recorded->counts, self->sensed.counts);
+        compare_integers(self, "counts", recorded->encoders, recorded->counts, self->sensed.counts);
         compare_integer(self, "age_us", "", recorded->age_us, self->sensed.age_us);
         compare_integer(self, "flags", "", recorded->flags, (int32_t)self->sensed.flags);
     }
@@ -338,12 +338,14 @@ static bool has_tick_shape(const replay *self)
     const mct_system *system = mct_systems[self->scene.system];
     const mctau_tick_t shape = {.coordinates = system->coordinate_count,
                                 .states = mct_state_count(system, mct_scene_effects(&self->scene)),
-                                .estimates = 2 * system->coordinate_count};
+                                .encoders = mct_encoder_count(system),
+                                .estimates = 2 * mct_encoder_count(system)};
     const uint8_t *data = self->log.data;
     return self->log.length == (uint32_t)mctau_tick_t_encoded_size(&shape) &&
            big_endian_32(data + COUNTS_AT) == (uint32_t)shape.coordinates &&
            big_endian_32(data + COUNTS_AT + 4) == (uint32_t)shape.states &&
-           big_endian_32(data + COUNTS_AT + 8) == (uint32_t)shape.estimates;
+           big_endian_32(data + COUNTS_AT + 8) == (uint32_t)shape.encoders &&
+           big_endian_32(data + COUNTS_AT + 12) == (uint32_t)shape.estimates;
 }
 
 /* A HAL that fails, and a stop, come from outside: they are latched here as they were in the run. They leave
@@ -392,7 +394,7 @@ static mct_status replay_decoded(replay *self)
         return MCT_OK;
     }
     memset(&self->given, 0, sizeof self->given);
-    memcpy(self->given.counts, recorded->counts, sizeof recorded->counts[0] * (size_t)recorded->coordinates);
+    memcpy(self->given.counts, recorded->counts, sizeof recorded->counts[0] * (size_t)recorded->encoders);
     self->given.age_us = (uint32_t)recorded->age_us;
     self->given.flags = (uint32_t)recorded->flags;
     self->wanted = recorded->wanted;

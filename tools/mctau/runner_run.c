@@ -163,7 +163,7 @@ static void write_headers(run *self)
     for (int i = 0; self->plant != NULL && i < mct_state_count(system, self->reader.effects); i++) {
         used = add(line, used, sizeof line, mct_state_field(system, i)->name);
     }
-    for (int i = 0; self->loop.controlled && i < 2 * system->coordinate_count; i++) {
+    for (int i = 0; self->loop.controlled && i < 2 * mct_encoder_count(system); i++) {
         char name[128];
         snprintf(name, sizeof name, "%s_estimate", mct_state_field(system, i)->name);
         used = add(line, used, sizeof line, name);
@@ -181,7 +181,7 @@ static void write_row(run *self, const mct_record *record)
     for (int i = 0; self->plant != NULL && i < mct_state_count(system, self->reader.effects); i++) {
         used = add_number(line, used, sizeof line, mct_plant_value(&self->reader, i));
     }
-    for (int i = 0; self->loop.controlled && i < 2 * system->coordinate_count; i++) {
+    for (int i = 0; self->loop.controlled && i < 2 * mct_encoder_count(system); i++) {
         used = add_number(line, used, sizeof line, (double)record->estimate[i]);
     }
     used = add_number(line, used, sizeof line, (double)record->wanted);
@@ -413,7 +413,7 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
     const mct_system *system = mct_systems[scene->system];
     const run_options *options = self->options;
     self->ticks = (uint64_t)(scene->duration / scene->dt + 0.5);
-    self->upright = system->upright_coordinate;
+    self->upright = system->actuation != NULL ? system->actuation->upright_coordinate : 0;
     self->last_second = scene->duration > 1 ? (uint64_t)((scene->duration - 1) / scene->dt + 0.5) : 0;
     self->first_fault = never;
     self->last_outside = never;
@@ -492,7 +492,7 @@ static void fill_state(const run *self, run_result *result)
     const mct_system *system = self->reader.system;
     /* What nobody simulates and nobody estimates is not known. */
     result->states = self->plant != NULL    ? mct_state_count(system, self->reader.effects)
-                     : self->loop.controlled ? 2 * system->coordinate_count
+                     : self->loop.controlled ? 2 * mct_encoder_count(system)
                                              : 0;
     for (int i = 0; i < result->states; i++) {
         const mct_field *field = mct_state_field(system, i);
