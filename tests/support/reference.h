@@ -11,6 +11,7 @@
 #ifndef MCT_TEST_REFERENCE_H
 #define MCT_TEST_REFERENCE_H
 
+#include "mctau/expo.h"
 #include "mctau/scene.h"
 
 #if defined __SIZEOF_FLOAT128__ && !defined __clang__
