@@ -2,8 +2,8 @@
  * @file effects.h
  * Effects: what a scene may switch on or leave out. One bit has one meaning across all systems.
  *
- * A right-hand side is written once over a literal mask; the compiler removes what is off. The low bits
- * (MCT_KERNEL_EFFECTS) select a kernel; the others act once a tick, outside of it.
+ * A right-hand side is written once over a literal mask; the compiler removes what is off. MCT_KERNEL_EFFECTS select
+ * a kernel; the others act once a tick, outside of it.
  */
 #ifndef MCTAU_EFFECTS_H
 #define MCTAU_EFFECTS_H
@@ -18,11 +18,18 @@ enum {
     MCT_MOTOR_QUASI_STATIC =
         1 << 3, /**< DC motor with L = 0: the input is a voltage, the current follows at once */
     MCT_MOTOR_INDUCTIVE = 1 << 4, /**< DC motor with L di/dt = V - R i - k w: the current is a state */
-    MCT_SATURATION = 1 << 5       /**< the supply bounds the voltage */
+    MCT_SATURATION = 1 << 5,      /**< the supply bounds the voltage */
+    MCT_DRAG = 1 << 6,            /**< force against a velocity, proportional to its square */
+    MCT_SPRING = 1 << 7,          /**< linear spring */
+    MCT_BASE_MOTION = 1 << 8,     /**< the pivot moves as prescribed */
+    MCT_CENTRIFUGAL = 1 << 9,     /**< of a rotating frame: - m omega x (omega x u) */
+    MCT_CORIOLIS = 1 << 10,       /**< of a rotating frame: - 2 m omega x v */
+    MCT_EULER_FORCE = 1 << 11,    /**< of a rotating frame: - m domega/dt x u */
+    MCT_STOKES = 1 << 12,         /**< viscous drag of a slow sphere, proportional to its velocity */
+    MCT_BUOYANCY = 1 << 13        /**< weight of the displaced fluid */
 };
 #define MCT_MOTOR          (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
-#define MCT_KERNEL_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR)
-#define MCT_KERNEL_MASKS   32 /**< kernel masks lie below this; those with both motors are empty */
+#define MCT_KERNEL_EFFECTS (~(uint32_t)MCT_SATURATION)
 
 /**
  * One effect as a scene names it. `bits` lists the mask of each choice; a switch has the choices false and
@@ -36,7 +43,7 @@ typedef struct {
     uint32_t bits[3];           /**< mask by choice (false/true for a switch) */
 } mct_effect;
 
-#define MCT_EFFECT_COUNT 5
+#define MCT_EFFECT_COUNT 13
 /** All effects, in the order in which they are listed. */
 extern const mct_effect mct_effects[MCT_EFFECT_COUNT];
 

@@ -13,4 +13,12 @@ const mct_effect mct_effects[MCT_EFFECT_COUNT] = {
      motor_choices,
      {0, MCT_MOTOR_QUASI_STATIC, MCT_MOTOR_INDUCTIVE}},
     {"saturation", "the supply bounds the voltage", MCT_SATURATION, NULL, {0, MCT_SATURATION, 0}},
+    {"drag", "force against a velocity, proportional to its square", MCT_DRAG, NULL, {0, MCT_DRAG, 0}},
+    {"spring", "linear spring", MCT_SPRING, NULL, {0, MCT_SPRING, 0}},
+    {"base_motion", "the pivot moves as prescribed", MCT_BASE_MOTION, NULL, {0, MCT_BASE_MOTION, 0}},
+    {"centrifugal", "of a rotating frame, outwards", MCT_CENTRIFUGAL, NULL, {0, MCT_CENTRIFUGAL, 0}},
+    {"coriolis", "of a rotating frame, across the velocity", MCT_CORIOLIS, NULL, {0, MCT_CORIOLIS, 0}},
+    {"euler", "of a frame whose rotation changes", MCT_EULER_FORCE, NULL, {0, MCT_EULER_FORCE, 0}},
+    {"stokes", "viscous drag of a slow sphere, proportional to its velocity", MCT_STOKES, NULL, {0, MCT_STOKES, 0}},
+    {"buoyancy", "weight of the displaced fluid", MCT_BUOYANCY, NULL, {0, MCT_BUOYANCY, 0}},
 };

@@ -11,6 +11,9 @@
 #include "../steppers/advance.h"
 #include "mctau/stepper.h"
 
+/* Of a system with a motor, by the low bits of its effects; those with both kinds of motor are empty. */
+#define MCT_MOTOR_KERNELS 32
+
 #define MCT_STEPPER_KERNELS(stepper, remainder, expression)                                          \
     MCT_INLINE void stepper##_increments(const void *constants, unsigned effects, const mct_real *x, \
                                          mct_real u, mct_real *dx)                                   \
@@ -21,7 +24,7 @@
     MCT_KERNELS_WITH_MOTOR(stepper, remainder, 0)                                                    \
     MCT_KERNELS_WITH_MOTOR(stepper, remainder, 8)                                                    \
     MCT_KERNELS_WITH_MOTOR(stepper, remainder, 16)                                                   \
-    static const mct_kernel stepper##_kernels[MCT_KERNEL_MASKS] = {                                  \
+    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {                                 \
         MCT_KERNEL_NAMES(stepper, 0), MCT_KERNEL_NAMES(stepper, 8), MCT_KERNEL_NAMES(stepper, 16)};
 
 /* The eight sets of gravity, viscous and coulomb with one kind of motor: MCT_MOTOR's bits as a literal. */
@@ -52,7 +55,92 @@
 static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int stepper, uint32_t effects)
 {
     const mct_kernel *row = kernels[stepper];
-    return row == NULL ? NULL : row[effects & MCT_KERNEL_EFFECTS];
+    return row == NULL ? NULL : row[effects & (MCT_MOTOR_KERNELS - 1)];
+}
+
+/*
+ * Kernels of a system without a motor: one for each subset of up to five switches, listed in the order of its
+ * `switches`. n: its coordinates.
+ */
+#define MCT_SWITCH_KERNEL(stepper, remainder, n, number, mask)                                               \
+    static void stepper##_##number(const void *constants, mct_state *state, mct_real u, int32_t steps)       \
+    {                                                                                                        \
+        const constants_t *k = constants;                                                                    \
+        mct_advance(stepper##_increments, friction, k, remainder, (mask), n, state, u, steps);               \
+    }
+
+#define MCT_SWITCH_INCREMENTS(stepper, expression)                                                           \
+    MCT_INLINE void stepper##_increments(const void *constants, unsigned effects, const mct_real *x,         \
+                                         mct_real u, mct_real *dx)                                           \
+    {                                                                                                        \
+        const constants_t *k = constants;                                                                    \
+        (void)effects;                                                                                       \
+        (void)u;                                                                                             \
+        expression;                                                                                          \
+    }
+
+#define MCT_PAIR(stepper, remainder, n, number, mask, A)                                                     \
+    MCT_SWITCH_KERNEL(stepper, remainder, n, number##0, mask)                                                \
+    MCT_SWITCH_KERNEL(stepper, remainder, n, number##1, (mask) | (A))
+#define MCT_QUAD(stepper, remainder, n, number, mask, A, B)                                                  \
+    MCT_PAIR(stepper, remainder, n, number##0, mask, A)                                                      \
+    MCT_PAIR(stepper, remainder, n, number##1, (mask) | (B), A)
+#define MCT_OCTET(stepper, remainder, n, number, mask, A, B, C)                                              \
+    MCT_QUAD(stepper, remainder, n, number##0, mask, A, B)                                                   \
+    MCT_QUAD(stepper, remainder, n, number##1, (mask) | (C), A, B)
+
+#define MCT_PAIR_NAMES(stepper, number)  stepper##_##number##0, stepper##_##number##1
+#define MCT_QUAD_NAMES(stepper, number)  MCT_PAIR_NAMES(stepper, number##0), MCT_PAIR_NAMES(stepper, number##1)
+#define MCT_OCTET_NAMES(stepper, number) MCT_QUAD_NAMES(stepper, number##0), MCT_QUAD_NAMES(stepper, number##1)
+
+/* Kernels of a stepper for two, three, four and five switches; bit i of the index is switch i. */
+#define MCT_KERNELS_2(...) MCT_KERNELS_2_OF(__VA_ARGS__)
+#define MCT_KERNELS_2_OF(stepper, remainder, n, A, B, expression)                                               \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                                                              \
+    static const mct_kernel stepper##_kernels[4] = {MCT_QUAD_NAMES(stepper, s)};
+#define MCT_KERNELS_3(...) MCT_KERNELS_3_OF(__VA_ARGS__)
+#define MCT_KERNELS_3_OF(stepper, remainder, n, A, B, C, expression)                                            \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
+    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                                                          \
+    static const mct_kernel stepper##_kernels[8] = {MCT_OCTET_NAMES(stepper, s)};
+#define MCT_KERNELS_4(...) MCT_KERNELS_4_OF(__VA_ARGS__) /* so that a list of switches may be a macro */
+#define MCT_KERNELS_4_OF(stepper, remainder, n, A, B, C, D, expression)                                         \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
+    MCT_OCTET(stepper, remainder, n, s0, 0, A, B, C)                                                         \
+    MCT_OCTET(stepper, remainder, n, s1, D, A, B, C)                                                         \
+    static const mct_kernel stepper##_kernels[16] = {MCT_OCTET_NAMES(stepper, s0), MCT_OCTET_NAMES(stepper, s1)};
+#define MCT_KERNELS_5(...) MCT_KERNELS_5_OF(__VA_ARGS__)
+#define MCT_KERNELS_5_OF(stepper, remainder, n, A, B, C, D, E, expression)                                      \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
+    MCT_OCTET(stepper, remainder, n, s00, 0, A, B, C)                                                        \
+    MCT_OCTET(stepper, remainder, n, s01, D, A, B, C)                                                        \
+    MCT_OCTET(stepper, remainder, n, s10, E, A, B, C)                                                        \
+    MCT_OCTET(stepper, remainder, n, s11, (D) | (E), A, B, C)                                                \
+    static const mct_kernel stepper##_kernels[32] = {                                                        \
+        MCT_OCTET_NAMES(stepper, s00), MCT_OCTET_NAMES(stepper, s01), MCT_OCTET_NAMES(stepper, s10),         \
+        MCT_OCTET_NAMES(stepper, s11)};
+
+/* The kernel of a stepper for an effect set, by the system's switches (0 ends them). */
+static inline mct_kernel mct_switched_kernel_of(const mct_kernel *const *kernels, const uint32_t *switches,
+                                                int stepper, uint32_t effects)
+{
+    const mct_kernel *row = kernels[stepper];
+    unsigned index = 0;
+    for (int i = 0; switches[i] != 0; i++) {
+        index |= (effects & switches[i]) ? 1u << i : 0;
+    }
+    return row == NULL ? NULL : row[index];
+}
+
+/* Of a system without dry friction. */
+MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    (void)constants;
+    (void)effects;
+    (void)x;
+    (void)u;
+    (void)dx;
 }
 
 #endif

@@ -3,7 +3,7 @@
 #include "mctau/scene.h"
 #include "systems.h"
 
-const mct_system *const mct_systems[MCT_SYSTEM_COUNT] = {&mct_cart_pole, &mct_reaction_wheel};
+const mct_system *const mct_systems[MCT_SYSTEM_COUNT] = {&mct_cart_pole, &mct_reaction_wheel, &mct_pendulum};
 
 static const mct_field current_field =
     MCT_QUANTITY("current", "A", -1e6, 1e6, 0, "armature current of an inductive motor");

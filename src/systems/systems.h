@@ -6,5 +6,6 @@
 
 extern const mct_system mct_cart_pole;
 extern const mct_system mct_reaction_wheel;
+extern const mct_system mct_pendulum;
 
 #endif
