@@ -199,7 +199,7 @@ static void test_modes_have_names(void)
  * knocked over. */
 static void test_a_controller_waits_swings_up_balances_and_begins_again(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         const int upright = mct_systems[system]->actuation->upright_coordinate;
         mct_scene scene = swing_up_scene(system);
         mct_controller controller;
@@ -229,7 +229,7 @@ static void test_a_controller_waits_swings_up_balances_and_begins_again(void)
 static void test_a_scene_that_no_voltage_can_balance_is_refused_with_a_sentence(void)
 {
     static const char *const dead[] = {"torque_constant", "gravity"};
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         for (int k = 0; k < 2; k++) {
             mct_scene scene = swing_up_scene(system);
             *parameter_of(&scene, dead[k]) = 0;

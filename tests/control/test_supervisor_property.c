@@ -325,7 +325,7 @@ static void start_loop(const mct_scene *scene)
 
 static void test_silent_sensors_end_at_zero_volts_within_6_ticks_and_it_stays_so(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         for (int latency = 0; latency < 3; latency++) {
             mct_scene scene = swing_up_scene(system);
             scene.latency = latency;

@@ -2,7 +2,7 @@
  * Prints one 64-bit hash per case over all the bits that the case computes, so that builds can be compared
  * line by line. usage: bits SCENE...
  *
- * Cases: sine and cosine; every stepper x system x motor (all eight sets of gravity, viscous and coulomb in
+ * Cases: sine and cosine; every stepper x system with a motor x motor (all eight sets of gravity, viscous and coulomb in
  * one hash), the state of every tick under an input that jumps; M, C, tau and all that follows from them; the
  * closed loop of each scene given, as it is and with noise, latency and a plant that differs, all that a tick
  * records.
@@ -270,7 +270,7 @@ int main(int argc, char **argv)
         uint32_t effect;
     } motors[] = {{"off", 0}, {"quasi_static", MCT_MOTOR_QUASI_STATIC}, {"inductive", MCT_MOTOR_INDUCTIVE}};
     print_sincos();
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < MCT_SYSTEM_COUNT && mct_systems[system]->actuation != NULL; system++) {
         for (size_t m = 0; m < sizeof motors / sizeof motors[0]; m++) {
             for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
                 print_kernels(system, stepper, motors[m].name, motors[m].effect);

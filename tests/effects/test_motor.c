@@ -111,7 +111,7 @@ static void test_a_motor_without_resistance_is_finite_and_its_current_follows_th
 {
     static const int steppers[] = {MCT_STEPPER_EULER, MCT_STEPPER_LEAP, MCT_STEPPER_RK4, MCT_STEPPER_EXPO};
     for (size_t n = 0; n < sizeof steppers / sizeof steppers[0]; n++) {
-        for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+        for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
             const mct_scene scene = scene_with_motor(system, steppers[n], 0, 0.5);
             if (mct_systems[system]->kernel(scene.stepper, scene.effects) == NULL) {
                 continue;
@@ -140,7 +140,7 @@ static void test_a_motor_without_resistance_is_finite_and_its_current_follows_th
 
 static void test_a_motor_with_neither_resistance_nor_inductance_is_refused(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         const mct_scene scene = scene_with_motor(system, MCT_STEPPER_LEAP, 0, 0);
         mct_plant plant;
         mct_message why = {""};

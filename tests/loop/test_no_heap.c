@@ -10,6 +10,7 @@
 #include "hal/socketcan/ring.h"
 #include "mctau/loop.h"
 #include "support/swing_up.h"
+#include "support/scenes.h"
 #include "unity.h"
 
 void setUp(void)
@@ -76,7 +77,7 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void)
     static mct_loop loop;
     static mct_sim sim;
     static mct_ring ring;
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         mct_scene scene = swing_up_scene(system);
         scene.noise = 1;
         scene.latency = 1;

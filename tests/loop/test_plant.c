@@ -21,7 +21,7 @@ static const double bad_inputs[] = {NAN, INFINITY, -INFINITY};
  * input. */
 static void test_an_input_that_is_not_finite_is_refused_counted_and_the_last_one_held(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         const mct_scene scene = scene_of(system, MCT_STEPPER_LEAP, mct_systems[system]->standard_effects);
         mct_plant plant;
         mct_plant twin;
@@ -105,7 +105,7 @@ static void test_taking_turns_out_changes_neither_value_nor_motion(void)
 static void test_a_start_that_is_whole_turns_away_moves_the_same_way(void)
 {
     static const int turns[] = {1, -1, 5, -1000};
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         const int upright = mct_systems[system]->actuation->upright_coordinate;
         mct_scene scene = scene_of(system, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_VISCOUS);
         scene.initial[upright] = 2;
@@ -186,7 +186,7 @@ static void test_several_turns_taken_out_of_one_tick_lose_nothing(void)
 
 static void test_upright_exactly_stays_upright_for_1e6_ticks(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
             mct_scene scene = scene_of(
                 system, stepper, mct_systems[system]->standard_effects & ~(uint32_t)MCT_MOTOR_INDUCTIVE);

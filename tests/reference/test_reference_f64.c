@@ -52,7 +52,7 @@ static void test_halving_the_steps_of_the_extrapolation_changes_less_than_1e_16(
 static void test_the_reference_conserves_energy_where_nothing_dissipates(void)
 {
     static const double start[] = {0, 2.0, 0, 0, 0};
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         const mct_scene scene = scene_of(system, MCT_STEPPER_RK4, MCT_GRAVITY);
         const reference_model model = reference_of(&scene);
         quad x[REFERENCE_STATES];

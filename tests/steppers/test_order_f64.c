@@ -84,7 +84,7 @@ static void test_every_stepper_converges_with_its_order_on_every_system_and_moto
 {
     static const uint32_t motors[] = {0, MCT_MOTOR_QUASI_STATIC, MCT_MOTOR_INDUCTIVE};
     int pairs = 0;
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         for (int motor = 0; motor < 3; motor++) {
             const mct_scene scene = smooth_scene(system, MCT_GRAVITY | MCT_VISCOUS | motors[motor], 0.05);
             quad end[REFERENCE_STATES];

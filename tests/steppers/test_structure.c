@@ -26,7 +26,7 @@ static void reverse(mct_plant *plant)
  * size 10. */
 static void test_leap_returns_to_its_start_when_reversed(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         mct_scene scene = scene_of(system, MCT_STEPPER_LEAP, MCT_GRAVITY);
         scene.initial[mct_systems[system]->actuation->upright_coordinate] = 2;
         scene.initial[3] = 0.5;
@@ -112,7 +112,7 @@ static void test_substeps_are_steps(void)
  * bit. */
 static void test_rest_is_rest_to_the_last_bit_for_every_stepper_and_effect_set(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         for (uint32_t effects = 0; effects < 24; effects++) {
             for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
                 if (mct_systems[system]->kernel(stepper, effects) == NULL) {

@@ -6,7 +6,7 @@
 #include "mctau/scene.h"
 #include "mctau/stepper.h"
 
-enum { CART_POLE, REACTION_WHEEL }; /* as in mct_systems */
+enum { CART_POLE, REACTION_WHEEL, CENTRAL_SYSTEMS }; /* as in mct_systems; those with a motor */
 
 /* Defaults of a system, with this stepper and these effects; checked at use, not here. */
 mct_scene scene_of(int system, int stepper, uint32_t effects);

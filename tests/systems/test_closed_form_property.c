@@ -406,7 +406,7 @@ static void test_accelerations_keep_their_digits_with_a_cart_of_a_millionth_of_t
 
 static void test_particles_have_no_negative_mass_by_default(void)
 {
-    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         const mct_scene scene = scene_of(system, MCT_STEPPER_RK4, MCT_GRAVITY);
         mct_constants constants;
         mct_evaluation out;

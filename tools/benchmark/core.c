@@ -61,10 +61,14 @@ static void measure_steps(const measure_effort *effort, int system, int stepper)
     mct_scene_defaults(&scene, system);
     const mct_system *model = mct_systems[system];
     const double *p = scene.parameters;
-    const double rate = p[model->actuation->resistance_parameter] / p[model->actuation->inductance_parameter];
+    const mct_actuation *actuation = model->actuation;
+    const double rate =
+        actuation != NULL ? p[actuation->resistance_parameter] / p[actuation->inductance_parameter] : 0;
     const double limit = mct_steppers[stepper].motor_stability_limit;
     scene.stepper = stepper;
-    scene.initial[model->actuation->upright_coordinate] = 2;
+    if (actuation != NULL) {
+        scene.initial[actuation->upright_coordinate] = 2;
+    }
     while ((scene.effects & MCT_MOTOR_INDUCTIVE) && limit > 0 && scene.dt * rate > 0.9 * limit) {
         scene.dt /= 2; /* the cost of a step does not depend on its length */
     }
@@ -215,6 +219,9 @@ int main(int argc, char **argv)
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
             measure_steps(&effort, system, stepper);
+        }
+        if (mct_systems[system]->actuation == NULL) {
+            continue;
         }
         measure_ticks(&effort, system, MCT_MODE_SWING_UP);
         measure_ticks(&effort, system, MCT_MODE_BALANCE);
