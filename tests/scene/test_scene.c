@@ -328,11 +328,23 @@ static void test_a_key_in_the_wrong_place_is_sent_where_it_belongs(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why.text, "; it belongs to reaction_wheel; allowed "), why.text);
 }
 
+/* A sentence that ends with the names of all systems. */
+static const char *with_systems(const char *begin)
+{
+    static char sentence[MCT_MESSAGE_SIZE];
+    size_t used = (size_t)snprintf(sentence, sizeof sentence, "%s", begin);
+    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+        used += (size_t)snprintf(sentence + used, sizeof sentence - used, "%s%s", i > 0 ? ", " : "",
+                                 mct_systems[i]->name);
+    }
+    return sentence;
+}
+
 static void test_unknown_names_are_refused_with_those_that_are_known(void)
 {
-    assert_refused(MCT_ERROR_RANGE, "[scene]\nsystem = 'cart_pol'",
-                   "x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed cart_pole, "
-                   "reaction_wheel");
+    assert_refused(
+        MCT_ERROR_RANGE, "[scene]\nsystem = 'cart_pol'",
+        with_systems("x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed "));
     assert_refused(
         MCT_ERROR_RANGE, CART "stepper = 'rk5'",
         "x.toml:3: scene.stepper: found 'rk5'; did you mean 'rk4'? allowed seed, euler, leap, rk4, expo");
@@ -343,7 +355,7 @@ static void test_unknown_names_are_refused_with_those_that_are_known(void)
 static void test_a_scene_must_name_its_system(void)
 {
     assert_refused(MCT_ERROR_RANGE, "[scene]\ndt = 0.001\n",
-                   "x.toml: scene.system: found none; allowed cart_pole, reaction_wheel");
+                   with_systems("x.toml: scene.system: found none; allowed "));
 }
 
 static void test_texts_and_lists_that_do_not_fit_are_refused(void)
