@@ -38,4 +38,17 @@ MCT_INLINE void mct_add_compensated(mct_real *value, mct_real *compensation, mct
     *value = mct_two_sum(*value, increment + *compensation, compensation);
 }
 
+/**
+ * Adds an increment of two parts, its rounded value and the rest, to a value that has a compensation. Nothing is lost
+ * but roundings of the compensation, so a clock does not drift. Either sum may be the larger. Ten additions.
+ * Source: D. E. Knuth, The Art of Computer Programming 2, 4.2.2 (the sum without an order).
+ */
+MCT_INLINE void mct_add_parts(mct_real *value, mct_real *compensation, mct_real increment, mct_real rest)
+{
+    const mct_real sum = *value + increment;
+    const mct_real added = sum - *value;
+    const mct_real dropped = (*value - (sum - added)) + (increment - added);
+    *value = mct_two_sum(sum, *compensation + (dropped + rest), compensation);
+}
+
 #endif

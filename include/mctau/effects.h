@@ -26,8 +26,10 @@ enum {
     MCT_CORIOLIS = 1 << 10,       /**< of a rotating frame: - 2 m omega x v */
     MCT_EULER_FORCE = 1 << 11,    /**< of a rotating frame: - m domega/dt x u */
     MCT_STOKES = 1 << 12,         /**< viscous drag of a slow sphere, proportional to its velocity */
-    MCT_BUOYANCY = 1 << 13        /**< weight of the displaced fluid */
+    MCT_BUOYANCY = 1 << 13,       /**< weight of the displaced fluid */
+    MCT_FORCING = 1 << 14         /**< a force that changes in time as prescribed */
 };
+#define MCT_CLOCK          (MCT_BASE_MOTION | MCT_FORCING) /**< what depends on time: the phases are states */
 #define MCT_MOTOR          (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
 #define MCT_KERNEL_EFFECTS (~(uint32_t)MCT_SATURATION)
 
@@ -43,7 +45,7 @@ typedef struct {
     uint32_t bits[3];           /**< mask by choice (false/true for a switch) */
 } mct_effect;
 
-#define MCT_EFFECT_COUNT 13
+#define MCT_EFFECT_COUNT 14
 /** All effects, in the order in which they are listed. */
 extern const mct_effect mct_effects[MCT_EFFECT_COUNT];
 

@@ -23,6 +23,8 @@
 #define MCT_MAX_PARAMETERS  24
 #define MCT_MAX_PARTICLES   4
 
+#define MCT_PHASES 2 /**< of a prescribed motion: one an axis */
+
 struct mct_scene;
 struct mct_message;
 
@@ -32,7 +34,7 @@ typedef struct {
     mct_real M[MCT_MAX_COORDINATES][MCT_MAX_COORDINATES]; /**< mass matrix, symmetric positive definite */
     mct_real position[MCT_MAX_PARTICLES][3];              /**< of each particle [m] */
     mct_real mass[MCT_MAX_PARTICLES];                     /**< [kg] */
-    mct_real potential_energy; /**< gravity's, zero at the height of the pivot [J] */
+    mct_real potential_energy; /**< gravity's, zero at the height of the pivot, and that of springs [J] */
     /* of position and velocity */
     mct_real C[MCT_MAX_COORDINATES][MCT_MAX_COORDINATES]; /**< m J' Jdot; only C v is unique */
     mct_real Cv[MCT_MAX_COORDINATES];
@@ -49,6 +51,7 @@ typedef struct {
     mct_real power_coulomb;       /**< at most 0 [W] */
     mct_real power_resistance;    /**< - R i^2 [W] */
     mct_real power_conversion;    /**< (k_T - k_b) i w: 0 where the motor's constants agree [W] */
+    mct_real power_base;          /**< of a base that moves as prescribed, through the constraints [W] */
 } mct_evaluation;
 
 /**
@@ -125,6 +128,12 @@ typedef struct mct_system {
     const mct_coordinate *coordinates;
     int parameter_count;
     const mct_field *parameters;
+    /**
+     * MCT_PHASES states that grow at constant rates while one of MCT_CLOCK is on: the clock of what is prescribed. Those
+     * in rad are angles and lose whole turns.
+     * States behind the rates, no coordinates. NULL without; a system with phases has no motor.
+     */
+    const mct_field *phases;
     const mct_field *input_without_motor; /**< name and unit of the input when the motor is off */
     uint32_t effects;                     /**< those that it supports */
     uint32_t standard_effects;            /**< those that are on when a scene does not say */
@@ -149,7 +158,7 @@ typedef struct mct_system {
     mct_kernel (*kernel)(int stepper, uint32_t effects);
 } mct_system;
 
-#define MCT_SYSTEM_COUNT 3
+#define MCT_SYSTEM_COUNT 10
 /** All systems, in the order in which they are listed. */
 extern const mct_system *const mct_systems[MCT_SYSTEM_COUNT];
 
@@ -162,10 +171,16 @@ uint32_t mct_scene_effects(const struct mct_scene *scene);
 /** Number of encoders: those of a system with a motor. */
 int mct_encoder_count(const mct_system *system);
 
-/** Number of states of a system under an effect set: 2 n, plus the current of an inductive motor. */
+/** Number of states of a system under an effect set: 2 n, plus the current of an inductive motor or the phases. */
 int mct_state_count(const mct_system *system, uint32_t effects);
 
-/** Descriptor of state `index` (coordinates, rates, current): name and unit. */
+/** Whether state `index` is a phase. */
+bool mct_state_is_phase(const mct_system *system, int index);
+
+/** Whether state `index` is a phase that is an angle, in rad: it loses whole turns. */
+bool mct_state_is_phase_angle(const mct_system *system, int index);
+
+/** Descriptor of state `index` (coordinates, rates, then current or phases): name and unit. */
 const mct_field *mct_state_field(const mct_system *system, int index);
 
 #endif

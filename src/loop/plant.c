@@ -29,14 +29,14 @@ static bool is_sane(const mct_state *state)
 /*
  * Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone.
  * Turns are subtracted by powers of two from the largest down, so that each difference is exact; the rest of
- * a turn goes to the compensation.
+ * a turn goes to the compensation. Returns how many.
  */
-static void take_turns(mct_state *state, int i)
+static int32_t take_turns(mct_state *state, int i)
 {
     enum { LARGEST = 28 }; /* MCT_STATE_BOUND is less than 2^28 turns */
     const mct_real x = state->x[i];
     if (x <= turn && x >= -turn) {
-        return;
+        return 0;
     }
     const mct_real sign = x < 0 ? -1 : 1;
     const int32_t turns = (int32_t)(sign * x / turn);
@@ -47,9 +47,28 @@ static void take_turns(mct_state *state, int i)
         }
     }
     const mct_real rest = state->c[i] - sign * (mct_real)turns * turn_rest;
-    /* Wraps after 2^31 turns, a year at 60 turns a second, as a counter does. */
-    state->turns[i] = (int32_t)((uint32_t)state->turns[i] + (uint32_t)(x < 0 ? -turns : turns));
     state->x[i] = mct_two_sum(sign * left, rest, &state->c[i]);
+    return x < 0 ? -turns : turns;
+}
+
+/* An angle's turns are counted; those of a phase mean nothing. */
+static void wrap_angles(mct_plant *plant)
+{
+    const mct_system *system = plant->system;
+    mct_state *state = &plant->state;
+    for (int i = 0; i < system->coordinate_count; i++) {
+        if (system->coordinates[i].is_angle) {
+            /* Wraps after 2^31 turns, a year at 60 turns a second, as a counter does. */
+            state->turns[i] = (int32_t)((uint32_t)state->turns[i] + (uint32_t)take_turns(state, i));
+        }
+    }
+    if (system->phases != NULL) {
+        for (int i = 2 * system->coordinate_count; i < mct_state_count(system, plant->effects); i++) {
+            if (mct_state_is_phase_angle(system, i)) {
+                (void)take_turns(state, i);
+            }
+        }
+    }
 }
 
 void mct_state_set(const mct_system *system, int states, const double *values, mct_state *state)
@@ -60,6 +79,8 @@ void mct_state_set(const mct_system *system, int states, const double *values, m
         if (i < system->coordinate_count && system->coordinates[i].is_angle) {
             state->turns[i] = (int32_t)(value / TURN);
             value -= state->turns[i] * TURN;
+        } else if (mct_state_is_phase_angle(system, i)) {
+            value -= (int32_t)(value / TURN) * TURN;
         }
         state->x[i] = (mct_real)value;
         state->c[i] = (mct_real)(value - (double)state->x[i]);
@@ -98,11 +119,7 @@ void mct_plant_step(mct_plant *plant, mct_real input)
     const mct_state before = plant->state;
     plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
     if (is_sane(&plant->state)) {
-        for (int i = 0; i < plant->system->coordinate_count; i++) {
-            if (plant->system->coordinates[i].is_angle) {
-                take_turns(&plant->state, i);
-            }
-        }
+        wrap_angles(plant);
     } else {
         plant->state = before;
         plant->diverged_ticks++;

@@ -15,7 +15,17 @@
 typedef void (*mct_derivative)(const void *constants, unsigned effects, const mct_real *x, mct_real u,
                                mct_real *dx);
 
+#define MCT_TIMED (UINT32_C(1) << 31) /* no effect, but of a kernel's mask: the state carries the time */
+
+/* Entries of a state that a kernel carries: n coordinates, their rates, then current, phases or time. */
+MCT_INLINE int mct_entries(unsigned effects, int n)
+{
+    return 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0) + ((effects & MCT_CLOCK) ? MCT_PHASES : 0) +
+           ((effects & MCT_TIMED) ? 1 : 0);
+}
+
 /*
+ * A phase has its increment in two parts, dx[i] and dx[i + MCT_PHASES], so that it does not drift.
  * `remainder` is what the rounding of the step's length leaves out of each increment, relative to it
  * (mct_step); 0 where the increments are exact.
  */
@@ -23,7 +33,7 @@ MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, 
                             mct_real remainder, unsigned effects, int n, mct_state *state, mct_real input,
                             int32_t steps)
 {
-    const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
+    const int states = mct_entries(effects, n);
     mct_real x[MCT_MAX_STATES];
     mct_real c[MCT_MAX_STATES];
     mct_real dx[MCT_MAX_STATES];
@@ -39,6 +49,10 @@ MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, 
         }
         MCT_UNROLL
         for (int i = 0; i < states; i++) {
+            if ((effects & MCT_CLOCK) && i >= 2 * n) {
+                mct_add_parts(&x[i], &c[i], dx[i], dx[i + MCT_PHASES]);
+                continue;
+            }
 #if MCT_REAL_IS_FLOAT
             c[i] += remainder * dx[i];
 #endif

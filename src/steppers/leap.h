@@ -15,7 +15,7 @@
 MCT_INLINE void mct_leap(mct_derivative kick, const void *constants, mct_step step, unsigned effects, int n,
                          const mct_real *x, mct_real u, mct_real *dx)
 {
-    const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
+    const int states = mct_entries(effects, n);
     mct_real middle[MCT_MAX_STATES];
     MCT_UNROLL
     for (int i = 0; i < n; i++) {

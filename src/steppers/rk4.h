@@ -19,7 +19,7 @@ typedef void (*mct_derivative_at)(const void *constants, unsigned effects, const
 MCT_INLINE void mct_rk4(mct_derivative_at derivative, int angle, const void *constants, mct_step step,
                         unsigned effects, int n, const mct_real *x, mct_real u, mct_real *dx)
 {
-    const int states = 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
+    const int states = mct_entries(effects, n);
     mct_real k1[MCT_MAX_STATES], k2[MCT_MAX_STATES], k3[MCT_MAX_STATES], k4[MCT_MAX_STATES],
         stage[MCT_MAX_STATES];
     mct_real s0, c0, s, c;

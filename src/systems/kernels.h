@@ -58,6 +58,11 @@ static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int ste
     return row == NULL ? NULL : row[effects & (MCT_MOTOR_KERNELS - 1)];
 }
 
+/* Bits of the mask of all kernels of a system without a motor, defined by the including file. */
+#ifndef MCT_ALWAYS
+#define MCT_ALWAYS 0
+#endif
+
 /*
  * Kernels of a system without a motor: one for each subset of up to five switches, listed in the order of its
  * `switches`. n: its coordinates.
@@ -66,7 +71,7 @@ static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int ste
     static void stepper##_##number(const void *constants, mct_state *state, mct_real u, int32_t steps)       \
     {                                                                                                        \
         const constants_t *k = constants;                                                                    \
-        mct_advance(stepper##_increments, friction, k, remainder, (mask), n, state, u, steps);               \
+        mct_advance(stepper##_increments, friction, k, remainder, (mask) | MCT_ALWAYS, n, state, u, steps);  \
     }
 
 #define MCT_SWITCH_INCREMENTS(stepper, expression)                                                           \
@@ -93,6 +98,11 @@ static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int ste
 #define MCT_QUAD_NAMES(stepper, number)  MCT_PAIR_NAMES(stepper, number##0), MCT_PAIR_NAMES(stepper, number##1)
 #define MCT_OCTET_NAMES(stepper, number) MCT_QUAD_NAMES(stepper, number##0), MCT_QUAD_NAMES(stepper, number##1)
 
+/* The kernel of a stepper of a system without switches. */
+#define MCT_KERNELS_0(stepper, remainder, n, expression)                                                     \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
+    MCT_SWITCH_KERNEL(stepper, remainder, n, s, 0)                                                           \
+    static const mct_kernel stepper##_kernels[1] = {stepper##_s};
 /* Kernels of a stepper for two, three, four and five switches; bit i of the index is switch i. */
 #define MCT_KERNELS_2(...) MCT_KERNELS_2_OF(__VA_ARGS__)
 #define MCT_KERNELS_2_OF(stepper, remainder, n, A, B, expression)                                               \

@@ -3,7 +3,18 @@
 #include "mctau/scene.h"
 #include "systems.h"
 
-const mct_system *const mct_systems[MCT_SYSTEM_COUNT] = {&mct_cart_pole, &mct_reaction_wheel, &mct_pendulum};
+const mct_system *const mct_systems[MCT_SYSTEM_COUNT] = {
+    &mct_cart_pole,
+    &mct_reaction_wheel,
+    &mct_pendulum,
+    &mct_spring_pendulum,
+    &mct_linked_particles,
+    &mct_moving_base,
+    &mct_rotating_frame,
+    &mct_solid_pendulum,
+    &mct_block,
+    &mct_falling_sphere,
+};
 
 static const mct_field current_field =
     MCT_QUANTITY("current", "A", -1e6, 1e6, 0, "armature current of an inductive motor");
@@ -15,7 +26,18 @@ int mct_encoder_count(const mct_system *system)
 
 int mct_state_count(const mct_system *system, uint32_t effects)
 {
-    return 2 * system->coordinate_count + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
+    const bool moves = (effects & MCT_CLOCK) && system->phases != NULL;
+    return 2 * system->coordinate_count + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0) + (moves ? MCT_PHASES : 0);
+}
+
+bool mct_state_is_phase(const mct_system *system, int index)
+{
+    return system->phases != NULL && index >= 2 * system->coordinate_count;
+}
+
+bool mct_state_is_phase_angle(const mct_system *system, int index)
+{
+    return mct_state_is_phase(system, index) && system->phases[index - 2 * system->coordinate_count].unit[0] == 'r';
 }
 
 const mct_field *mct_state_field(const mct_system *system, int index)
@@ -23,6 +45,9 @@ const mct_field *mct_state_field(const mct_system *system, int index)
     const int n = system->coordinate_count;
     if (index < n) {
         return &system->coordinates[index].position;
+    }
+    if (mct_state_is_phase(system, index)) {
+        return &system->phases[index - 2 * n];
     }
     return index < 2 * n ? &system->coordinates[index - n].rate : &current_field;
 }

@@ -7,5 +7,12 @@
 extern const mct_system mct_cart_pole;
 extern const mct_system mct_reaction_wheel;
 extern const mct_system mct_pendulum;
+extern const mct_system mct_spring_pendulum;
+extern const mct_system mct_linked_particles;
+extern const mct_system mct_moving_base;
+extern const mct_system mct_rotating_frame;
+extern const mct_system mct_solid_pendulum;
+extern const mct_system mct_block;
+extern const mct_system mct_falling_sphere;
 
 #endif

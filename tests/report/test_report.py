@@ -144,6 +144,18 @@ def test_a_picture_stands_alone_in_the_colours_of_the_page(reported, scene):
     assert "body" not in style, "rules of the page alone"
 
 
+def test_there_is_a_page_and_a_picture_of_every_system(reported, mctau):
+    for system in json.loads(mctau("list", "--json").stdout)["systems"]:
+        made = reported(f"{system['name']}.toml", "scene.duration=1.6")
+        assert made.done.returncode == 0, made.done.stderr
+        assert not made.page.loaded and not made.page.open and not made.page.wrong, system["name"]
+        assert not re.search(r"\bnan\b|\binf\b", " ".join(made.page.texts)), system["name"]
+        picture = reported(f"{system['name']}.toml", tool="picture.py")
+        assert picture.done.returncode == 0, picture.done.stderr
+        assert len(picture.text.encode()) < PICTURE_LIMIT
+        xml.etree.ElementTree.fromstring(picture.text)
+
+
 @pytest.mark.parametrize("tool", ["report.py", "picture.py"])
 def test_without_matplotlib_a_sentence_says_where_it_is(source, tool):
     # -S: without the packages of the environment

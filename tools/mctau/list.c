@@ -289,7 +289,7 @@ static void print_heading(const char *title)
 
 static void print_effects(const mct_system *system)
 {
-    printf("\n[effects]\n");
+    printf("\n[effects]%s\n", system->effects == 0 ? "                  none" : "");
     for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
         const mct_effect *effect = &mct_effects[i];
         if (system->effects & effect->mask) {

@@ -48,7 +48,7 @@ static double total(const energies *energy)
 static double total_power(const energies *power)
 {
     return power->power_input + power->power_viscous + power->power_coulomb + power->power_resistance +
-           power->power_conversion;
+           power->power_conversion + power->power_base;
 }
 
 /* --- JSON --- */
@@ -114,6 +114,7 @@ static void print_json(const scene_file *file, const mct_result *at)
     json_number(&out, "coulomb", at->energy.power_coulomb);
     json_number(&out, "resistance", at->energy.power_resistance);
     json_number(&out, "conversion", at->energy.power_conversion);
+    json_number(&out, "base", at->energy.power_base);
     json_end_object(&out);
     json_finish(&out);
 }
@@ -195,7 +196,8 @@ static void print_ledger(const mct_result *at)
                   {"total", total(e)}},
       power[] = {{"input", e->power_input},           {"viscous friction", e->power_viscous},
                  {"dry friction", e->power_coulomb},  {"resistance", e->power_resistance},
-                 {"conversion", e->power_conversion}, {"total", total_power(e)}};
+                 {"conversion", e->power_conversion}, {"moving base", e->power_base},
+                 {"total", total_power(e)}};
     printf("\nEnergy [J]\n");
     for (size_t i = 0; i < sizeof energy / sizeof energy[0]; i++) {
         printf("  %-18s %14.8g\n", energy[i].name, energy[i].value);

@@ -20,6 +20,7 @@ energies runner_energies(const mct_evaluation *at)
         .power_coulomb = (double)at->power_coulomb,
         .power_resistance = (double)at->power_resistance,
         .power_conversion = (double)at->power_conversion,
+        .power_base = (double)at->power_base,
     };
 }
 

@@ -40,7 +40,7 @@ typedef struct {
 /* Energies [J] and powers [W] at one state. */
 typedef struct {
     double kinetic, potential, magnetic;
-    double power_input, power_viscous, power_coulomb, power_resistance, power_conversion;
+    double power_input, power_viscous, power_coulomb, power_resistance, power_conversion, power_base;
 } energies;
 
 typedef struct {

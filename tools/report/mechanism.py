@@ -1,4 +1,4 @@
-"""Draws the mechanisms: arm and wheel, cart and pole. Metres, y up; the caller's viewBox does the rest."""
+"""Draws the mechanisms. Metres, y up; the caller's viewBox does the rest."""
 
 import math
 
@@ -6,15 +6,27 @@ import math
 class Mechanism:
     """`pose(row, kind)` is an SVG group; `box` is (left, top, width, height) in metres, y down."""
 
+    frame_width = 80  # [px] least width of a frame of the film
+    frames = 24
+    poses = 16  # of the stroboscope
+    path_points = 200
+
     def __init__(self, run):
         self.run = run
         self.table = run.table
 
+    def parameter(self, name):
+        return float(self.run.scene("parameters", name))
+
+    def shown(self):
+        """(begin, end) of the stroboscope."""
+        return interesting(self.run)
+
+    def title(self):
+        return "the swing that was caught" if self.run.last_balance else "the first swing"
+
 
 class ReactionWheel(Mechanism):
-    frame_width = 80  # [px] least width of a frame of the film
-    frames = 24
-
     def __init__(self, run):
         super().__init__(run)
         parameters = run.scene.values["parameters"]
@@ -92,8 +104,155 @@ class CartPole(Mechanism):
         )
 
 
+class Rods(Mechanism):
+    """What is drawn as a line through points, with a ball at its end: `points(row)`, the last is the tip."""
+
+    ball_share = 0.03
+
+    def __init__(self, run):
+        super().__init__(run)
+        step = max(1, len(run.time) // 2000)
+        drawn = [point for row in range(0, len(run.time), step) for point in self.outline(row)] + [(0, 0)]
+        sides = [[point[axis] for point in drawn] for axis in (0, 1)]
+        self.size = max(max(side) - min(side) for side in sides) or 1.0
+        self.ball = self.ball_share * self.size
+        left, top = (min(side) - 2 * self.ball for side in sides)
+        self.box = (left, top, max(sides[0]) + 2 * self.ball - left, max(sides[1]) + 2 * self.ball - top)
+
+    def outline(self, row):
+        """Points that must be within the picture."""
+        return self.points(row)
+
+    def tip(self, row):
+        return self.points(row)[-1]
+
+    def still(self):
+        return f'<circle class="pivot" r="{0.6 * self.ball:.4f}"/>'
+
+    def pose(self, row, kind=""):
+        x, y = self.tip(row)
+        line = "L".join(f"{x:.4f} {y:.4f}" for x, y in self.points(row))
+        return (
+            f'<g class="pose {kind}"><path class="rod" d="M{line}"/>'
+            f'<circle class="bob" cx="{x:.4f}" cy="{y:.4f}" r="{self.ball:.4f}"/></g>'
+        )
+
+
+class Pendulum(Rods):
+    def base(self, row):
+        return 0.0, 0.0
+
+    def points(self, row):
+        (x, y), length, angle = self.base(row), self.parameter("length"), self.table["angle"][row]
+        return [(x, y), (x + length * math.sin(angle), y - length * math.cos(angle))]
+
+
+class MovingBase(Pendulum):
+    path_points = 1000
+
+    def base(self, row):
+        place = [
+            self.parameter(f"base_amplitude_{axis}")
+            * math.cos(self.table.get(f"base_angle_{axis}", [0.0] * (row + 1))[row] + self.parameter(f"base_phase_{axis}"))
+            for axis in (1, 2)
+        ]
+        return place[0], -place[1]
+
+    def shown(self):
+        return 0.0, min(self.run.duration, 3.0)
+
+    def title(self):
+        return "the path"
+
+
+class SpringPendulum(Rods):
+    poses = 3
+    path_points = 1500
+
+    def points(self, row):
+        """A spring of eight turns, its ball at the end."""
+        length, angle = self.table["length"][row], self.table["angle"][row]
+        c, s = math.cos(angle), math.sin(angle)
+        across = [0, 0] + [(-1) ** i for i in range(16)] + [0, 0]
+        along = [0, 0.15] + [0.15 + 0.7 * (i + 0.5) / 16 for i in range(16)] + [0.85, 1]
+        wide = 0.03 * self.parameter("rest_length") or 0.03 * length
+        return [
+            (a * length * c - b * wide * s, -(a * length * s + b * wide * c)) for a, b in zip(along, across)
+        ]
+
+    def shown(self):
+        return 0.0, self.run.duration
+
+    def title(self):
+        return "the path"
+
+
+class SolidPendulum(Rods):
+    ball_share = 0.012
+
+    def points(self, row):
+        """The middle of the free end."""
+        return [self.corner(row, self.parameter("size_1") - self.parameter("pivot_offset"), 0)]
+
+    def corner(self, row, along, across):
+        c, s = math.cos(self.table["angle"][row]), math.sin(self.table["angle"][row])
+        return along * c - across * s, -(along * s + across * c)
+
+    def outline(self, row):
+        near, wide = -self.parameter("pivot_offset"), self.parameter("size_2") / 2
+        far = near + self.parameter("size_1")
+        return [self.corner(row, *place) for place in ((near, -wide), (far, -wide), (far, wide), (near, wide))]
+
+    def pose(self, row, kind=""):
+        line = "L".join(f"{x:.4f} {y:.4f}" for x, y in self.outline(row))
+        return f'<g class="pose {kind}"><path class="cart" d="M{line}Z"/>{self.still()}</g>'
+
+
+class RotatingFrame(Rods):
+    """Seen along axis 3, from the frame; the path in space is that of a frame that turns about this axis."""
+
+    ball_share = 0.018
+    path_points = 400
+
+    def points(self, row):
+        return [(self.table["position_1"][row], -self.table["position_2"][row])]
+
+    def outline(self, row):
+        return [*self.points(row), self.in_space(row)]
+
+    def in_space(self, row):
+        time, (x, y) = self.run.time[row], self.points(row)[0]
+        angle = time * (self.parameter("angular_velocity_3") + time / 2 * self.parameter("angular_acceleration_3"))
+        c, s = math.cos(angle), -math.sin(angle)
+        return c * x - s * y, s * x + c * y
+
+    def still(self):
+        """The platform, and the straight line in space."""
+        x, y = self.points(0)[0]
+        line = "L".join(f"{x:.4f} {y:.4f}" for x, y in map(self.in_space, range(0, len(self.run.time), 20)))
+        return f'<circle class="orbit" r="{math.hypot(x, y):.4f}"/><path class="rail" fill="none" d="M{line}"/>' + super().still()
+
+    def shown(self):
+        return 0.0, self.run.duration
+
+    def title(self):
+        return "the path; grey: in space"
+
+
+DRAWN = {
+    "cart_pole": CartPole,
+    "reaction_wheel": ReactionWheel,
+    "pendulum": Pendulum,
+    "spring_pendulum": SpringPendulum,
+    "moving_base": MovingBase,
+    "solid_pendulum": SolidPendulum,
+    "rotating_frame": RotatingFrame,
+}
+
+
 def of(run):
-    return {"reaction_wheel": ReactionWheel, "cart_pole": CartPole}[run.name](run)
+    """None for a system that is better seen in its plots."""
+    return DRAWN[run.name](run) if run.name in DRAWN else None
 
 
 def drawing(mechanism, body, label):
@@ -106,7 +265,7 @@ def drawing(mechanism, body, label):
 
 def path_of_tip(mechanism, begin, end):
     first, last = mechanism.run.at(begin), mechanism.run.at(end)
-    step = max(1, (last - first) // 200)
+    step = max(1, (last - first) // mechanism.path_points)
     points = [mechanism.tip(row) for row in range(first, last + 1, step)]
     return '<path class="trail" d="M' + "L".join(f"{x:.4f} {y:.4f}" for x, y in points) + '"/>'
 

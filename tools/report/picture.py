@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws one SVG of a run, for the documentation: the swing that was caught, and angle and input over time.
+"""Draws one SVG of a run, for the documentation: the mechanism in motion, and two plots over time.
 
 To make it takes matplotlib: tools/setup, build/venv.
 
@@ -19,6 +19,7 @@ from run_data import ROOT
 WIDTH, HEIGHT = 900, 384  # [px]
 SCALE = 1.2  # of the plots, for their texts to be read
 PLOT_WIDTH = 440  # [px] before that
+ALONE = 720  # [px] of the plots of a system that is not drawn
 PLOT_HEIGHT = plot.LINE + plot.HEIGHT + plot.BOTTOM
 STYLE = """
 .paper { fill: var(--paper); } .title { fill: var(--ink); font-size: 12.6px; font-weight: 600; }
@@ -35,17 +36,30 @@ def placed(svg, left, top, width, height):
     return svg.replace("<svg", f'<svg x="{left}" y="{top}" width="{width}" height="{height}"', 1)
 
 
+def panels(run, **options):
+    """What moves, and what moves it; in a free motion the next coordinate, or the rate."""
+    made = [plot.angle(run, **options)] if run.angle else []
+    if any(run.table["applied"]):
+        made.append(plot.input_(run, **options))
+    left = [c for c in run.system["coordinates"] if not c["is_angle"]]
+    fields = left + [c["rate"] for c in run.system["coordinates"]]
+    return (made + [plot.state(run, field, **options) for field in fields[: 2 - len(made)]])[:2]
+
+
 def picture(run):
     drawn = mechanism.of(run)
-    begin, end = mechanism.interesting(run)
     last = run.duration if run.caught_at is None else min(run.duration, 1.7 * run.caught_at)
-    parts = [
-        f'<text class="title" x="20" y="18">the swing that was caught, {begin:.1f} s to {end:.1f} s</text>',
-        placed(mechanism.stroboscope(drawn, begin, end, 16), 15, 45, 320, 320),
-    ]
-    width, height = round(SCALE * PLOT_WIDTH), round(SCALE * PLOT_HEIGHT)
-    for i, panel in enumerate((plot.angle, plot.input_)):
-        svg = panel(run, widths={"wide": PLOT_WIDTH}, xlim=(0, last)).svg("wide")
+    parts = []
+    if drawn is not None:
+        begin, end = drawn.shown()
+        parts = [
+            f'<text class="title" x="20" y="18">{drawn.title()}, {begin:.1f} s to {end:.1f} s</text>',
+            placed(mechanism.stroboscope(drawn, begin, end, drawn.poses), 15, 45, 320, 320),
+        ]
+    plot_width = PLOT_WIDTH if drawn is not None else ALONE
+    width, height = round(SCALE * plot_width), round(SCALE * PLOT_HEIGHT)
+    for i, panel in enumerate(panels(run, widths={"wide": plot_width}, xlim=(0, last))):
+        svg = panel.svg("wide")
         parts.append(f'<g class="plot">{placed(svg, WIDTH - width, 4 + i * (height + 4), width, height)}</g>')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
@@ -56,7 +70,7 @@ def picture(run):
 
 def main(argv=None):
     parser = argparse.ArgumentParser(
-        prog="tools/report/picture.py", description="Draws one SVG of a controlled run."
+        prog="tools/report/picture.py", description="Draws one SVG of a run."
     )
     for name in ("csv", "json", "scene"):
         parser.add_argument(f"--{name}", required=True)

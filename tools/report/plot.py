@@ -7,6 +7,7 @@ drawing serves light and dark. Each panel is drawn wide and narrow; page.css sho
 import html
 import io
 import logging
+import math
 import re
 import sys
 
@@ -165,9 +166,20 @@ class Plot:
 
 
 def angle(run, **options):
-    range_ = {"ylim": (-200, 200), "yticks": range(-180, 181, 90)}
-    plot = Plot(words(run.angle_name), "deg from upright", run, **range_, **options)
-    plot.line(run.time, run.degrees, "true", "", wraps=180)
+    if "upright_coordinate" not in run.system:  # as it comes, whole turns included
+        range_, degrees = {}, [math.degrees(value) for value in run.table[run.angle_name]]
+    else:
+        range_, degrees = {"ylim": (-200, 200), "yticks": range(-180, 181, 90)}, run.degrees
+    origin = next((f" from {name}" for name in ("upright", "horizontal") if name in run.angle["doc"]), "")
+    plot = Plot(words(run.angle_name), f"deg{origin}", run, **range_, **options)
+    plot.line(run.time, degrees, "true", "", wraps=180)
+    return plot
+
+
+def state(run, field, **options):
+    """A coordinate or a rate, by its field of the catalogue."""
+    plot = Plot(words(field["name"]), field["unit"], run, **options)
+    plot.line(run.time, run.table[field["name"]], "true", "")
     return plot
 
 

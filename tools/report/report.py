@@ -94,12 +94,16 @@ def figures(run):
         found.append(("deviation, settled, rms", f"{run.rms_degrees(settled(run)):.3f}", "deg"))
     if run.name == "cart_pole":
         found.append(("cart went as far as", f"{max(map(abs, run.table['cart_position'])):.3f}", "m"))
-    else:
+    elif run.name == "reaction_wheel":
         found.append(("fastest wheel", f"{max(map(abs, run.table['wheel_rate'])):.0f}", "rad/s"))
+    else:
+        rate = run.system["coordinates"][0]["rate"]
+        largest = max(map(abs, run.table[rate["name"]]))
+        found.append((f"largest {words(rate['name'])}", f"{largest:.3g}", rate["unit"]))
     if run.scene.has_motor:
         found.append(("largest voltage", f"{max(map(abs, run.table['applied'])):.2f}", "V"))
     else:
-        change = run.energy[-1] - run.energy[0]
+        change = result["energy"] - result["energy_start"]
         found.append(("energy, from beginning to end", f"{change:+.3g}".replace("-", "\u2212"), "J"))
     if not run.scene("scene", "realtime") and result["ns_per_tick"] > 0:
         found.append(("speed", f"{1e9 * result['dt'] / result['ns_per_tick']:.0f}", "\u00d7 real time"))
@@ -109,16 +113,18 @@ def figures(run):
 
 def pictures(run):
     drawn = mechanism.of(run)
-    begin, end = mechanism.interesting(run)
-    poses = 16
+    if drawn is None:
+        return ""
+    begin, end = drawn.shown()
+    poses = drawn.poses
     every = (end - begin) / (poses - 1)
-    swing = "The swing that was caught" if run.last_balance else "The first swing"
     film_end = run.duration if run.caught_at is None else min(run.duration, run.caught_at * 1.12 + 0.2)
     frames = mechanism.film(drawn, 0.0, film_end - run.result["dt"], drawn.frames)
     strip = "".join(f'<figure class="{mode}">{svg}{time:.2f} s</figure>' for time, mode, svg in frames)
     return (
         f'<h2>Motion</h2><div class="pictures"><figure>{mechanism.stroboscope(drawn, begin, end, poses)}'
-        f'<figcaption class="note">{swing}: from {begin:.2f} s, one pose every {1e3 * every:.0f} ms, '
+        f'<figcaption class="note">{drawn.title()[0].upper()}{drawn.title()[1:]}: from {begin:.2f} s, '
+        f'one pose every {1e3 * every:.0f} ms, '
         'the later '
         f'the darker.</figcaption></figure><div><div class="film" '
         f'style="--frame:{drawn.frame_width}px">{strip}</div>'
@@ -132,7 +138,7 @@ def plots(run):
     """All panels, in the order in which they are read."""
     time, table = run.time, run.table
     upright = run.result["upright_at"] if run.controlled else None
-    made = [plot.angle(run)]
+    made = [plot.angle(run)] if run.angle else []
 
     def panel(title, unit, **options):
         made.append(plot.Plot(title, unit, run, **options))
@@ -163,9 +169,10 @@ def plots(run):
         estimated(panel(words(rate), coordinate["rate"]["unit"]), rate)
     if "current" in table:
         panel("current", "A").line(time, table["current"], "true", "")
-    energy = panel("energy of the model" if run.is_varied else "energy", "J")
-    energy.line(time, run.energy, "true", "kinetic + potential")
-    energy.levels((run.upright_energy,), "target", "at rest upright")
+    if run.energy:
+        energy = panel("energy of the model" if run.is_varied else "energy", "J")
+        energy.line(time, run.energy, "true", "kinetic + potential")
+        energy.levels((run.upright_energy,), "target", "at rest upright")
     return made
 
 

@@ -137,7 +137,7 @@ class Scene:
 
     @property
     def has_motor(self):
-        return self("effects", "motor") != "off"
+        return self.values["effects"].get("motor", "off") != "off"
 
 
 class Run:
@@ -165,14 +165,19 @@ class Run:
                 f"{json_path}: both must be of the same run"
             )
         self.duration = self.result["time"]
-        self.angle_name = self.system["upright_coordinate"]
-        self.rate_names = [coordinate["rate"]["name"] for coordinate in self.system["coordinates"]]
-        self.upright_index = [c["name"] for c in self.system["coordinates"]].index(self.angle_name)
-        self.degrees = [folded(math.degrees(angle)) for angle in self.table[self.angle_name]]
+        coordinates = self.system["coordinates"]
+        self.angle = next((c for c in coordinates if c["name"] == self.system.get("upright_coordinate")), None)
+        if self.angle is None:  # no motor: the first angle, if there is one
+            self.angle = next((c for c in coordinates if c["is_angle"]), None)
+        self.angle_name = self.angle and self.angle["name"]
+        self.rate_names = [coordinate["rate"]["name"] for coordinate in coordinates]
+        self.degrees = [folded(math.degrees(angle)) for angle in self.table.get(self.angle_name, [])]
         self.controlled = f"{self.angle_name}_estimate" in self.table
         self.modes = spans(self.time, self.table["mode"], self.duration)
         self.faults = first_faults(self.time, self.table["faults"])
-        self._energies()
+        self.energy = None  # at each tick: of the systems with a motor
+        if "upright_coordinate" in self.system:
+            self._energies()
 
     def _energies(self):
         """Total energy at each tick, from the mass matrix and the potential energy that `mctau mct` shows."""
@@ -193,8 +198,11 @@ class Run:
             m12 = aside[0][1] + (M[0][1] - aside[0][1]) * c
             kinetic = 0.5 * (M[0][0] * a * a + M[1][1] * b * b) + m12 * a * b
             self.energy.append(kinetic + self.upright_energy * c + 0.5 * inductance * i * i)
-        # A varied plant has other masses than the scene says: then this is the model's energy.
-        self.is_varied = float(self.scene("variation", "spread") or 0) > 0
+
+    @property
+    def is_varied(self):
+        """A varied plant has other masses than the scene says: then the energy is the model's."""
+        return float(self.scene("variation", "spread") or 0) > 0
 
     @property
     def last_balance(self):
@@ -216,7 +224,7 @@ class Run:
 
     def turning_points(self, begin, end):
         """Times at which the pendulum changes its direction."""
-        rates = self.table[self.rate_names[self.upright_index]]
+        rates = self.table[self.angle["rate"]["name"]] if self.angle else []
         return [
             self.time[i]
             for i in range(1, len(rates))

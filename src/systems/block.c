@@ -1,0 +1,614 @@
+/*
+ * Block: a mass m with one coordinate x up a plane that is tilted by a, on the plane or on a belt that runs
+ * along it with the speed b; a spring pulls it to x = 0.
+ *
+ * Equation      m xdd = u + F(t) - m g sin a - k x + R
+ *               F(t) = F_0 + r t + A sin(w t), t the time
+ *               R dry friction: while xd = b it holds, |R| <= mu_s m g cos a;
+ *               else R = - mu_d m g cos a sign(xd - b).
+ * Source        section 8.2, eq. 447 (F = mu W, W = m g on the level, and the text on mu_s, mu_d).
+ * Conventions   x up the slope; the plane passes through the origin; x = 0 is the spring's end.
+ * Differences   slope, spring, belt, the forces in time are ours.
+ * Constraint    the plane: e = m xdd - f = m g cos a along its normal. Friction is a force from outside, no
+ *               part of e.
+ * Steppers      seed, euler, leap, rk4 with Moreau's clamp (effects/friction1.h, with mu_s at rest): first
+ *               order where the block starts or stops. expo: the motion is linear between such events, so its
+ *               series in time is summed to rounding, and the events are located within the step: exact,
+ *               however large the step.
+ * Validity      mu_s >= mu_d; the block does not leave the plane or tip. Spring and sine turn at most 1 rad a
+ *               step.
+ */
+#include "mctau/block.h"
+
+#include "../steppers/euler.h"
+#include "../steppers/leap.h"
+#include "../steppers/rk4.h"
+#include "../steppers/rk4_plain.h"
+#include "../steppers/seed.h"
+#include "kernels.h"
+#include "mctau/matrix.h"
+#include "mctau/message.h"
+#include "mctau/scene.h"
+#include "mctau/sincos.h"
+#include "systems.h"
+
+#define friction \
+    mct_no_friction /* the steppers here see to it themselves: it has a belt and two coefficients */
+
+typedef mct_block_constants constants_t;
+
+enum {
+    MASS,
+    STATIC,
+    DYNAMIC,
+    GRAVITY,
+    SLOPE,
+    FORCE,
+    FORCE_RAMP,
+    FORCE_AMPLITUDE,
+    FORCE_FREQUENCY,
+    SPRING,
+    BELT_SPEED,
+    PARAMETERS
+};
+
+static const mct_field parameters[PARAMETERS] = {
+    [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 1, "of the block"),
+    [STATIC] =
+        MCT_QUANTITY("static_coefficient", "1", 0, 1e3, 0.6, "of friction at rest; at least the dynamic one"),
+    [DYNAMIC] = MCT_QUANTITY("dynamic_coefficient", "1", 0, 1e3, 0.5, "of friction in motion"),
+    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [SLOPE] = MCT_QUANTITY("slope", "rad", -1.57, 1.57, 0, "of the plane, upwards with the position"),
+    [FORCE] = MCT_QUANTITY("force", "N", -1e9, 1e9, 0, "along the plane, constant"),
+    [FORCE_RAMP] = MCT_QUANTITY("force_ramp", "N/s", -1e9, 1e9, 0, "growth of the force"),
+    [FORCE_AMPLITUDE] = MCT_QUANTITY("force_amplitude", "N", -1e9, 1e9, 0, "of the force's sine in time"),
+    [FORCE_FREQUENCY] = MCT_QUANTITY("force_frequency", "rad/s", 0, 1e6, 1, "of the force's sine in time"),
+    [SPRING] = MCT_QUANTITY("spring", "N/m", 0, 1e9, 100, "stiffness of the spring, at rest at position 0"),
+    [BELT_SPEED] = MCT_QUANTITY("belt_speed", "m/s", -1e4, 1e4, 0, "of the plane's surface, along the plane"),
+};
+
+static const mct_coordinate coordinates[1] = {
+    {.position = MCT_QUANTITY("position", "m", -1e6, 1e6, 0, "up the slope"),
+     .rate = MCT_QUANTITY("velocity", "m/s", -1e6, 1e6, 0, "")},
+};
+
+static const mct_field phases[MCT_PHASES] = {
+    MCT_QUANTITY("force_phase", "rad", -1e6, 1e6, 0, "force_frequency times time, whole turns taken out"),
+    MCT_QUANTITY("force_time", "s", -1e6, 1e6, 0, "that force_ramp has grown for"),
+};
+enum { PHASE = 2, TIME = 3 }; /* their places in the state */
+
+static const mct_field force_field = MCT_QUANTITY("force", "N", -1e9, 1e9, 0, "along the plane");
+static const char *const particle_names[] = {"block"};
+
+/* Terms of the series of exp(angle) that are not below rounding. */
+static int32_t order_of(double angle)
+{
+    double term = 1;
+    int32_t order = 0;
+    while (order < 3 || (order < MCT_BLOCK_ORDER && term > 0.01 * (double)MCT_REAL_EPSILON)) {
+        order++;
+        term *= angle / (order + 1);
+    }
+    return order;
+}
+
+static mct_status refuse(struct mct_message *why, const char *key, double found, const char *unit,
+                         const char *allowed, double bound)
+{
+    mct_message_add(why, "parameters.");
+    mct_message_add(why, key);
+    mct_message_add(why, ": found ");
+    mct_message_add_number(why, found);
+    mct_message_add(why, unit);
+    mct_message_add(why, "; allowed ");
+    mct_message_add(why, allowed);
+    mct_message_add_number(why, bound);
+    mct_message_add(why, unit);
+    return MCT_ERROR_UNSUITED;
+}
+
+static mct_status prepare(const struct mct_scene *scene, double h, void *constants, struct mct_message *why)
+{
+    constants_t *k = constants;
+    const double *p = scene->parameters;
+    double sine, cosine;
+    mct_sincos_f64(p[SLOPE], &sine, &cosine);
+    const double weight = (scene->effects & MCT_GRAVITY) ? p[MASS] * p[GRAVITY] : 0;
+    const double normal = (scene->effects & MCT_COULOMB) ? weight * cosine : 0;
+    const double spring = (scene->effects & MCT_SPRING) ? p[SPRING] : 0;
+    const double turn_of_spring = h * mct_sqrt(spring / p[MASS]);
+    const bool forcing = scene->effects & MCT_FORCING;
+    const double turn_of_force = forcing && p[FORCE_AMPLITUDE] != 0 ? h * p[FORCE_FREQUENCY] : 0;
+    if (normal > 0 && p[STATIC] < p[DYNAMIC]) {
+        return refuse(why, "static_coefficient", p[STATIC], "", "from dynamic_coefficient, ", p[DYNAMIC]);
+    }
+    if (turn_of_spring > 1) {
+        return refuse(why, "spring", spring, " N/m", "1 rad of oscillation a step, up to ",
+                      p[MASS] / (h * h));
+    }
+    if (turn_of_force > 1) {
+        return refuse(why, "force_frequency", p[FORCE_FREQUENCY], " rad/s", "1 rad a step, up to ", 1 / h);
+    }
+    k->step = mct_step_of(h);
+    k->mass = (mct_real)p[MASS];
+    k->inverse_mass = (mct_real)(1 / p[MASS]);
+    k->step_over_mass = (mct_real)(h / p[MASS]);
+    k->sine = (mct_real)sine;
+    k->cosine = (mct_real)cosine;
+    k->weight = (mct_real)weight;
+    k->weight_along = (mct_real)(-weight * sine);
+    k->static_friction = (mct_real)(p[STATIC] * normal);
+    k->dynamic_friction = (mct_real)(p[DYNAMIC] * normal);
+    k->belt_speed = (mct_real)p[BELT_SPEED];
+    const double belt = p[BELT_SPEED] < 0 ? -p[BELT_SPEED] : p[BELT_SPEED];
+    const double speed = belt + 4 * h * p[STATIC] * normal / p[MASS]; /* a step before it came to rest */
+    k->rest_speed = (mct_real)(belt > 0 ? 16 * (double)MCT_REAL_EPSILON * speed : 0);
+    k->spring = (mct_real)spring;
+    k->force = (mct_real)(forcing ? p[FORCE] : 0);
+    k->ramp = (mct_real)(forcing ? p[FORCE_RAMP] : 0);
+    k->amplitude = (mct_real)(forcing ? p[FORCE_AMPLITUDE] : 0);
+    k->frequency = (mct_real)p[FORCE_FREQUENCY];
+    k->phase_step = (mct_real)turn_of_force;
+    k->phase_rest = (mct_real)(turn_of_force - (double)k->phase_step);
+    k->step_rest = (mct_real)(h - (double)k->step.h);
+    k->order = order_of(turn_of_spring > turn_of_force ? turn_of_spring : turn_of_force);
+    return MCT_OK;
+}
+
+MCT_INLINE mct_real size_of(mct_real value)
+{
+    return value < 0 ? -value : value;
+}
+
+MCT_INLINE mct_real sign_of(mct_real value)
+{
+    return (mct_real)(value > 0) - (mct_real)(value < 0);
+}
+
+/* F(t), given the sine of its phase. */
+MCT_INLINE mct_real prescribed(const constants_t *k, mct_real sine, mct_real time)
+{
+    return k->force + k->ramp * time + k->amplitude * sine;
+}
+
+/* All forces but friction and F(t). */
+MCT_INLINE mct_real steady(const constants_t *k, unsigned effects, mct_real position, mct_real u)
+{
+    mct_real sum = u;
+    if (effects & MCT_GRAVITY) {
+        sum += k->weight_along;
+    }
+    if (effects & MCT_SPRING) {
+        sum -= k->spring * position;
+    }
+    return sum;
+}
+
+/* All forces but friction. */
+MCT_INLINE mct_real smooth_force(const constants_t *k, unsigned effects, mct_real position, mct_real phase,
+                                 mct_real time, mct_real u)
+{
+    mct_real sum = steady(k, effects, position, u);
+    if (effects & MCT_FORCING) {
+        mct_real s, c;
+        mct_sincos(phase, &s, &c);
+        sum += prescribed(k, s, time);
+    }
+    return sum;
+}
+
+/* The clock's increments of a step, in two parts. */
+MCT_INLINE void turn_clock(const constants_t *k, unsigned effects, mct_real *dx)
+{
+    if (effects & MCT_FORCING) {
+        dx[PHASE] = k->phase_step;
+        dx[TIME] = k->step.h;
+        dx[PHASE + MCT_PHASES] = k->phase_rest;
+        dx[TIME + MCT_PHASES] = k->step_rest;
+    }
+}
+
+MCT_INLINE bool is_at_rest(const constants_t *k, mct_real relative)
+{
+    return size_of(relative) <= k->rest_speed;
+}
+
+/* --- Moreau's clamp --- */
+
+/* Corrects the increments of a step for friction: what comes to rest on the belt has exactly its speed. */
+MCT_INLINE void clamp(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+{
+    if (!(effects & MCT_COULOMB)) {
+        return;
+    }
+    const mct_real relative = x[1] - k->belt_speed;
+    const mct_real most = k->step.h * (is_at_rest(k, relative) ? k->static_friction : k->dynamic_friction);
+    const mct_real stop = -k->mass * (relative + dx[1]);
+    if (most > 0 && stop >= -most && stop <= most) {
+        dx[1] = -relative;
+        dx[0] = k->step.half * (x[1] + k->belt_speed);
+    } else {
+        const mct_real change = k->inverse_mass * mct_clamp(stop, k->step.h * k->dynamic_friction);
+        dx[1] += change;
+        dx[0] += k->step.half * change;
+    }
+}
+
+/* The steppers' increments, corrected for friction; the clock is exact. */
+MCT_INLINE void finish(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+{
+    clamp(k, effects, x, dx);
+    turn_clock(k, effects, dx);
+}
+
+/* The angle is the force's phase. */
+MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct_real *x, mct_real s,
+                              mct_real c, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    mct_real sum = steady(k, effects, x[0], u);
+    (void)c;
+    if (effects & MCT_FORCING) {
+        sum += prescribed(k, s, x[TIME]);
+        dx[PHASE] = k->frequency;
+        dx[TIME] = 1;
+    }
+    dx[0] = x[1];
+    dx[1] = k->inverse_mass * sum;
+}
+
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
+{
+    mct_real s = 0;
+    mct_real c = 1;
+    if (effects & MCT_FORCING) {
+        mct_sincos(x[PHASE], &s, &c);
+    }
+    derivative_at(constants, effects, x, s, c, u, dx);
+}
+
+MCT_INLINE void runge_kutta(const constants_t *k, unsigned effects, const mct_real *x, mct_real u,
+                            mct_real *dx)
+{
+    if (effects & MCT_FORCING) {
+        mct_rk4(derivative_at, PHASE, k, k->step, effects, 1, x, u, dx);
+    } else {
+        mct_rk4_plain(derivative, k, k->step, effects, 1, x, u, dx);
+    }
+}
+
+/*
+ * Velocity increment of a step with the forces at x (euler), or of the middle of the step (leap, x its
+ * middle).
+ */
+MCT_INLINE void kick(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    const bool forced = effects & MCT_FORCING;
+    dx[1] =
+        k->step_over_mass * smooth_force(k, effects, x[0], forced ? x[PHASE] : 0, forced ? x[TIME] : 0, u);
+}
+
+MCT_INLINE void kick_middle(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                            mct_real *dx)
+{
+    const constants_t *k = constants;
+    const bool forced = effects & MCT_FORCING;
+    const mct_real phase = forced ? x[PHASE] + MCT_R(0.5) * k->phase_step : 0;
+    dx[1] = k->step_over_mass * smooth_force(k, effects, x[0], phase, forced ? x[TIME] + k->step.half : 0, u);
+}
+
+/* --- the exact motion --- */
+
+enum {
+    TERMS = MCT_BLOCK_ORDER + 1,
+    PHASES = 5,     /* of sticking and sliding in a step; the last is not looked into for an event */
+    ITERATIONS = 12 /* of Newton's method, kept within its bracket */
+};
+
+/* The motion of one phase, as polynomials in the fraction of a step that has passed since its start. */
+typedef struct {
+    mct_real position[TERMS + 1];
+    mct_real velocity[TERMS + 1];
+    mct_real force[TERMS + 1]; /* all but friction at rest */
+} series;
+
+static mct_real value_at(const mct_real *c, int32_t order, mct_real s)
+{
+    mct_real sum = c[order];
+    for (int32_t n = order - 1; n >= 0; n--) {
+        sum = sum * s + c[n];
+    }
+    return sum;
+}
+
+static mct_real slope_at(const mct_real *c, int32_t order, mct_real s)
+{
+    mct_real sum = (mct_real)order * c[order];
+    for (int32_t n = order - 1; n >= 1; n--) {
+        sum = sum * s + (mct_real)n * c[n];
+    }
+    return sum;
+}
+
+/* What a polynomial gains from 0 to s. */
+static inline mct_real gain_to(const mct_real *c, int32_t order, mct_real s)
+{
+    return s * value_at(c + 1, order - 1, s);
+}
+
+/*
+ * m dv/dt = F - k x and dx/dt = v, term by term, from a position, a velocity and a clock; `push` is constant.
+ * A block that sticks is not accelerated.
+ */
+static inline void expand(const constants_t *k, unsigned effects, mct_real position, mct_real velocity,
+                          const mct_real *clock, mct_real push, bool sticks, series *motion)
+{
+    static const mct_real share[TERMS] = {
+        MCT_R(1.0),      MCT_R(1.0 / 2),  MCT_R(1.0 / 3),  MCT_R(1.0 / 4),  MCT_R(1.0 / 5),  MCT_R(1.0 / 6),
+        MCT_R(1.0 / 7),  MCT_R(1.0 / 8),  MCT_R(1.0 / 9),  MCT_R(1.0 / 10), MCT_R(1.0 / 11), MCT_R(1.0 / 12),
+        MCT_R(1.0 / 13), MCT_R(1.0 / 14), MCT_R(1.0 / 15), MCT_R(1.0 / 16), MCT_R(1.0 / 17), MCT_R(1.0 / 18)};
+    const mct_real inertia = sticks ? 0 : k->step_over_mass;
+    mct_real s = 0;
+    mct_real c = 0;
+    if (effects & MCT_FORCING) {
+        mct_sincos(clock[0], &s, &c);
+        s *= k->amplitude;
+        c *= k->amplitude;
+    }
+    motion->position[0] = position;
+    motion->velocity[0] = velocity;
+    for (int32_t n = 0; n < k->order; n++) {
+        mct_real force = 0;
+        if (n == 0) {
+            force = steady(k, effects, position, push);
+        } else if (effects & MCT_SPRING) {
+            force = -k->spring * motion->position[n];
+        }
+        if (effects & MCT_FORCING) {
+            force += s; /* the n-th term of prescribed() */
+            if (n == 0) {
+                force += k->force + k->ramp * clock[1];
+            } else if (n == 1) {
+                force += k->ramp * k->step.h;
+            }
+        }
+        motion->force[n] = force;
+        motion->velocity[n + 1] = inertia * force * share[n];
+        motion->position[n + 1] = k->step.h * motion->velocity[n] * share[n];
+        const mct_real turned = k->phase_step * share[n]; /* the next terms of sine and cosine */
+        const mct_real next = turned * c;
+        c = -turned * s;
+        s = next;
+    }
+}
+
+/* A root in [0, end] of a polynomial that is at least 0 at 0 and negative at the end. */
+static mct_real root_of(const mct_real *c, int32_t order, mct_real end)
+{
+    mct_real low = 0;
+    mct_real high = end;
+    mct_real s = end;
+    for (int i = 0; i < ITERATIONS; i++) {
+        const mct_real value = value_at(c, order, s);
+        if (value < 0) {
+            high = s;
+        } else {
+            low = s;
+        }
+        const mct_real next = s - value / slope_at(c, order, s);
+        s = next >= low && next <= high ? next : MCT_R(0.5) * (low + high); /* also where the slope is 0 */
+    }
+    return s;
+}
+
+/* Where a polynomial that is at least 0 at 0 first becomes negative; `end` when it does not do so before. */
+static mct_real first_crossing(const mct_real *c, int32_t order, mct_real end)
+{
+    if (value_at(c, order, end) < 0) {
+        return root_of(c, order, end);
+    }
+    /* It may have dipped below in between: down at the start, up at the end. */
+    if (!(c[1] < 0 && slope_at(c, order, end) > 0)) {
+        return end;
+    }
+    mct_real downward[TERMS + 1] = {0}; /* - slope */
+    for (int32_t n = 0; n < order; n++) {
+        downward[n] = -(mct_real)(n + 1) * c[n + 1];
+    }
+    const mct_real lowest = root_of(downward, order - 1, end);
+    return value_at(c, order, lowest) < 0 ? root_of(c, order, lowest) : end;
+}
+
+/* When a block that slides in a direction (+-1) comes to rest on the belt. */
+static mct_real stop_of(const constants_t *k, const series *motion, mct_real direction, mct_real end)
+{
+    mct_real relative[TERMS + 1];
+    const mct_real start = motion->velocity[0] - k->belt_speed;
+    relative[0] = direction * start;
+    for (int32_t n = 1; n <= k->order; n++) {
+        relative[n] = direction * motion->velocity[n];
+    }
+    /* From rest, the start itself is no stop: the root at 0 is divided out. */
+    return start == 0 ? first_crossing(relative + 1, k->order - 1, end)
+                      : first_crossing(relative, k->order, end);
+}
+
+/* When the force on a block at rest exceeds what holds it, and in which direction it leaves. */
+static mct_real break_away_of(const constants_t *k, const series *motion, mct_real end, mct_real *direction)
+{
+    mct_real soonest = end;
+    for (int i = 0; i < 2; i++) {
+        const mct_real side = i == 0 ? MCT_R(1.0) : MCT_R(-1.0);
+        mct_real spare[TERMS + 1];
+        spare[0] = k->static_friction - side * motion->force[0];
+        for (int32_t n = 1; n < k->order; n++) {
+            spare[n] = -side * motion->force[n];
+        }
+        const mct_real crossing = first_crossing(spare, k->order - 1, soonest);
+        if (crossing < soonest) {
+            soonest = crossing;
+            *direction = side;
+        }
+    }
+    return soonest;
+}
+
+/*
+ * Increments of a step under friction: phases of sticking and sliding, each ended by an event within the step
+ * or by the end of it.
+ */
+static inline void locate_events(const constants_t *k, unsigned effects, const mct_real *x, mct_real u,
+                                 mct_real *dx)
+{
+    series motion;
+    mct_real velocity = x[1];
+    mct_real direction = 0; /* of sliding on the belt; 0: not yet known */
+    mct_real left = 1;      /* of the step */
+    dx[0] = 0;
+    dx[1] = 0;
+    for (int phase = 1; phase <= PHASES; phase++) {
+        const mct_real passed = 1 - left;
+        mct_real clock[MCT_PHASES] = {0};
+        if (effects & MCT_FORCING) {
+            clock[0] = x[PHASE] + passed * k->phase_step;
+            clock[1] = x[TIME] + passed * k->step.h;
+        }
+        const mct_real position = x[0] + dx[0];
+        const mct_real relative = velocity - k->belt_speed;
+        if (is_at_rest(k, relative)) {
+            velocity = k->belt_speed;
+            dx[1] = velocity - x[1];
+            if (direction == 0) {
+                const mct_real force = smooth_force(k, effects, position, clock[0], clock[1], u);
+                direction = size_of(force) <= k->static_friction ? 0 : sign_of(force);
+            }
+        } else {
+            direction = sign_of(relative);
+        }
+        const bool sticks = direction == 0;
+        const mct_real push = u - direction * k->dynamic_friction;
+        expand(k, effects, position, velocity, clock, push, sticks, &motion);
+        mct_real length = left;
+        if (phase < PHASES) {
+            length =
+                sticks ? break_away_of(k, &motion, left, &direction) : stop_of(k, &motion, direction, left);
+        }
+        dx[0] += gain_to(motion.position, k->order, length);
+        dx[1] += sticks ? 0 : gain_to(motion.velocity, k->order, length);
+        if (!(length < left)) {
+            return;
+        }
+        left -= length;
+        velocity = k->belt_speed; /* every event happens at the belt's speed */
+        dx[1] = velocity - x[1];
+        if (!sticks) {
+            direction = 0;
+        }
+    }
+}
+
+MCT_INLINE void exact(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    turn_clock(k, effects, dx);
+    if ((effects & MCT_COULOMB) && k->static_friction > 0) {
+        locate_events(k, effects, x, u, dx);
+    } else {
+        series motion;
+        expand(k, effects, x[0], x[1], x + PHASE, u, false, &motion);
+        dx[0] = gain_to(motion.position, k->order, 1);
+        dx[1] = gain_to(motion.velocity, k->order, 1);
+    }
+}
+
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
+{
+    const constants_t *k = constants;
+    const mct_real position = x[0];
+    const mct_real v = x[1];
+    const mct_real relative = v - k->belt_speed;
+    mct_real outer = u; /* force from outside */
+    *out = (mct_evaluation){0};
+    if (effects & MCT_FORCING) {
+        mct_real s, c;
+        mct_sincos(x[PHASE], &s, &c);
+        outer += prescribed(k, s, x[TIME]);
+    }
+    const mct_real smooth = steady(k, effects, position, outer);
+    mct_real dry = 0;
+    if (!is_at_rest(k, relative)) {
+        dry = -sign_of(relative) * k->dynamic_friction;
+    } else if (size_of(smooth) <= k->static_friction) {
+        dry = -smooth;
+    } else {
+        dry = -sign_of(smooth) * k->dynamic_friction;
+    }
+    out->M[0][0] = k->mass;
+    out->tau[0] = smooth + dry;
+    out->acceleration[0] = k->inverse_mass * out->tau[0];
+    out->mass[0] = k->mass;
+    out->position[0][0] = k->cosine * position;
+    out->position[0][1] = k->sine * position;
+    out->constraint_force[0][0] = -k->weight * k->cosine * k->sine;
+    out->constraint_force[0][1] = k->weight * k->cosine * k->cosine;
+    out->kinetic_energy = MCT_R(0.5) * k->mass * v * v;
+    out->potential_energy = -k->weight_along * position + MCT_R(0.5) * k->spring * position * position;
+    out->power_input = outer * v + dry * k->belt_speed; /* of the hand, and of the belt */
+    out->power_coulomb = dry * relative;
+}
+
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
+{
+    const constants_t *k = constants;
+    (void)time;
+    position[0][0] = mct_hyperdual_scale(k->cosine, q[0]);
+    position[0][1] = mct_hyperdual_scale(k->sine, q[0]);
+    position[0][2] = mct_hyperdual_constant(0);
+}
+
+#define SWITCHES MCT_GRAVITY, MCT_COULOMB, MCT_SPRING, MCT_FORCING
+static const uint32_t switches[] = {SWITCHES, 0};
+
+MCT_KERNELS_4(seed, k->step.remainder, 1, SWITCHES,
+              (mct_seed(derivative, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
+MCT_KERNELS_4(euler, k->step.remainder, 1, SWITCHES,
+              (mct_euler(kick, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
+MCT_KERNELS_4(leap, k->step.remainder, 1, SWITCHES,
+              (mct_leap(kick_middle, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
+MCT_KERNELS_4(rk4, k->step.sixth_remainder, 1, SWITCHES,
+              (runge_kutta(k, effects, x, u, dx), finish(k, effects, x, dx)))
+MCT_KERNELS_4(expo, k->step.remainder, 1, SWITCHES, exact(k, effects, x, u, dx))
+
+static mct_kernel kernel(int stepper, uint32_t effects)
+{
+    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+        [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_EXPO] = expo_kernels,
+    };
+    return mct_switched_kernel_of(kernels, switches, stepper, effects);
+}
+
+const mct_system mct_block = {
+    .name = "block",
+    .doc = "a block with dry friction on a slope or a belt",
+    .source = "8.2",
+    .coordinate_count = 1,
+    .coordinates = coordinates,
+    .parameter_count = PARAMETERS,
+    .parameters = parameters,
+    .phases = phases,
+    .input_without_motor = &force_field,
+    .effects = MCT_GRAVITY | MCT_COULOMB | MCT_SPRING | MCT_FORCING,
+    .standard_effects = MCT_GRAVITY | MCT_COULOMB | MCT_FORCING,
+    .particle_count = 1,
+    .particle_names = particle_names,
+    .prepare = prepare,
+    .evaluate = evaluate,
+    .place = place,
+    .kernel = kernel,
+};

@@ -1,0 +1,245 @@
+/*
+ * Solid pendulum: a homogeneous box x by y by z that turns in the plane about an axle through its long
+ * middle line, at a distance from its end.
+ *
+ * Equation      I a = - m g d cos th - nu w + torque + dry friction,  th the angle, w its rate, a its
+ *               acceleration, m = density x y z, d = x/2 - offset (pivot to centre), I = m (x^2 + y^2) / 12
+ *               + m d^2.
+ * Source        sections 5.4.1 and 5.5.2, eqs. 328-332, 354-362.
+ * Conventions   th counterclockwise from the horizontal to the right: pi/2 stands (unstable), -pi/2 hangs,
+ *               for d > 0.
+ * Differences   (328): x^2 + y^2 in the third entry; (331): d^2 = 0.2401; (332), (355), (362): I = 1.3667,
+ *               not 1.3706; (357): counterclockwise; (360), (362): the torque is -20.30 cos th N m; (362):
+ *               of thdd, -14.856 rad/s^2 at the start. Friction is ours.
+ * Particles     The box moves as four points of a quarter of its mass, sqrt(3) times nearer to its centre
+ *               than its edges: same centre, same second moments in the plane.
+ * Constraint    box and axle, e = m xdd - (0, -m g, 0), which also transmits the couple of friction. The
+ *               force of the axle is the sum of all e.
+ * Validity      box rigid, axle parallel to z, offset from 0 to x; any size > 0.
+ */
+#include "mctau/solid_pendulum.h"
+
+#include "../effects/friction1.h"
+#include "../steppers/euler.h"
+#include "../steppers/leap.h"
+#include "../steppers/rk4.h"
+#include "../steppers/seed.h"
+#include "kernels.h"
+#include "mctau/scene.h"
+#include "mctau/sincos.h"
+#include "systems.h"
+
+typedef mct_solid_pendulum_constants constants_t;
+
+enum { SIZE_1, SIZE_2, SIZE_3, DENSITY, PIVOT_OFFSET, GRAVITY, FRICTION, COULOMB, PARAMETERS };
+
+static const mct_field parameters[PARAMETERS] = {
+    [SIZE_1] = MCT_QUANTITY("size_1", "m", 1e-4, 1e3, 1, "length, from end to end"),
+    [SIZE_2] = MCT_QUANTITY("size_2", "m", 1e-4, 1e3, 0.04, "height, across in the plane"),
+    [SIZE_3] = MCT_QUANTITY("size_3", "m", 1e-4, 1e3, 0.04, "depth, along the axle"),
+    [DENSITY] = MCT_QUANTITY("density", "kg/m^3", 1e-3, 1e5, 2640, "of the box; the source's aluminium"),
+    [PIVOT_OFFSET] =
+        MCT_QUANTITY("pivot_offset", "m", 0, 1e3, 0.01, "end of the box to axle; at most size_1"),
+    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.2, "viscous friction of the axle"),
+    [COULOMB] = MCT_QUANTITY("coulomb", "N m", 0, 1e6, 0, "dry friction of the axle"),
+};
+
+static const mct_coordinate coordinates[1] = {
+    {.position = MCT_QUANTITY("angle", "rad", -1e6, 1e6, 0, "counterclockwise from horizontal"),
+     .rate = MCT_QUANTITY("angle_rate", "rad/s", -1e6, 1e6, 0, ""),
+     .is_angle = true},
+};
+
+static const mct_field torque_field = MCT_QUANTITY("torque", "N m", -1e9, 1e9, 0, "about the axle");
+enum { PARTICLES = 4 };
+static const char *const particle_names[PARTICLES] = {"near_below", "near_above", "far_below", "far_above"};
+
+static mct_status prepare(const struct mct_scene *scene, double h, void *constants, struct mct_message *why)
+{
+    constants_t *k = constants;
+    const double *p = scene->parameters;
+    const double x = p[SIZE_1];
+    const double y = p[SIZE_2];
+    if (p[PIVOT_OFFSET] > x) {
+        mct_message_add(why, "parameters.pivot_offset: found ");
+        mct_message_add_number(why, p[PIVOT_OFFSET]);
+        mct_message_add(why, " m; allowed 0 to size_1, which is ");
+        mct_message_add_number(why, x);
+        mct_message_add(why, " m");
+        return MCT_ERROR_UNSUITED;
+    }
+    const double mass = p[DENSITY] * x * y * p[SIZE_3];
+    const double d = 0.5 * x - p[PIVOT_OFFSET];
+    const double inertia = mass * ((x * x + y * y) / 12 + d * d);
+    const double gravity = (scene->effects & MCT_GRAVITY) ? p[GRAVITY] : 0;
+    const double share = 0.28867513459481288; /* 1 / sqrt(12) */
+    k->step = mct_step_of(h);
+    k->mass = (mct_real)mass;
+    k->inertia = (mct_real)inertia;
+    k->inverse_inertia = (mct_real)(1 / inertia);
+    k->gravity = (mct_real)gravity;
+    k->weight_moment = (mct_real)(mass * gravity * d);
+    k->viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? p[FRICTION] : 0);
+    k->coulomb = (mct_real)((scene->effects & MCT_COULOMB) ? p[COULOMB] : 0);
+    for (int i = 0; i < PARTICLES; i++) {
+        k->along[i] = (mct_real)(i < 2 ? d - share * x : d + share * x);
+        k->across[i] = (mct_real)(i % 2 == 0 ? -share * y : share * y);
+    }
+    return MCT_OK;
+}
+
+/* All torques but dry friction. */
+MCT_INLINE mct_real torque(const constants_t *k, unsigned effects, mct_real c, mct_real w, mct_real u)
+{
+    mct_real sum = u;
+    if (effects & MCT_GRAVITY) {
+        sum -= k->weight_moment * c;
+    }
+    if (effects & MCT_VISCOUS) {
+        sum -= k->viscous * w;
+    }
+    return sum;
+}
+
+MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct_real *x, mct_real s,
+                              mct_real c, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    (void)s;
+    dx[0] = x[1];
+    dx[1] = k->inverse_inertia * torque(k, effects, c, x[1], u);
+}
+
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
+    derivative_at(constants, effects, x, s, c, u, dx);
+}
+
+/*
+ * Velocity increment of a step. Viscous damping is taken at the new rate (`share` 1: euler) or at the mean of both
+ * (1/2: leap).
+ */
+MCT_INLINE void kick(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real share,
+                     mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
+    const mct_real impulse = k->step.h * torque(k, effects, c, x[1], u);
+    if (effects & MCT_VISCOUS) {
+        dx[1] = impulse / (k->inertia + k->step.h * share * k->viscous);
+    } else {
+        dx[1] = k->inverse_inertia * impulse;
+    }
+}
+
+MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                              mct_real *dx)
+{
+    kick(constants, effects, x, u, 1, dx);
+}
+
+MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                               mct_real *dx)
+{
+    kick(constants, effects, x, u, MCT_R(0.5), dx);
+}
+
+MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    const constants_t *k = constants;
+    (void)effects;
+    (void)u;
+    mct_friction1_correct(k->inertia, k->inverse_inertia, k->coulomb, k->step.h, x[1], dx);
+}
+
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
+{
+    const constants_t *k = constants;
+    const mct_real w = x[1];
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
+    *out = (mct_evaluation){0};
+    const mct_real smooth = torque(k, effects, c, w, u);
+    const mct_real dry = mct_friction1_force(k->coulomb, w, smooth);
+    out->M[0][0] = k->inertia;
+    out->tau[0] = smooth + dry;
+    out->acceleration[0] = k->inverse_inertia * out->tau[0];
+    const mct_real a = out->acceleration[0];
+    const mct_real mass = MCT_R(0.25) * k->mass;
+    for (int i = 0; i < PARTICLES; i++) {
+        const mct_real right = k->along[i] * c - k->across[i] * s;
+        const mct_real up = k->along[i] * s + k->across[i] * c;
+        out->mass[i] = mass;
+        out->position[i][0] = right;
+        out->position[i][1] = up;
+        out->constraint_force[i][0] = mass * (-up * a - right * w * w);
+        out->constraint_force[i][1] = mass * (right * a - up * w * w + k->gravity);
+    }
+    out->kinetic_energy = MCT_R(0.5) * k->inertia * w * w;
+    out->potential_energy = k->weight_moment * s;
+    out->power_input = u * w;
+    out->power_viscous = -k->viscous * w * w;
+    out->power_coulomb = dry * w;
+}
+
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
+{
+    const constants_t *k = constants;
+    mct_hyperdual s, c;
+    (void)time;
+    mct_hyperdual_sincos(q[0], &s, &c);
+    for (int i = 0; i < PARTICLES; i++) {
+        position[i][0] =
+            mct_hyperdual_sub(mct_hyperdual_scale(k->along[i], c), mct_hyperdual_scale(k->across[i], s));
+        position[i][1] =
+            mct_hyperdual_add(mct_hyperdual_scale(k->along[i], s), mct_hyperdual_scale(k->across[i], c));
+        position[i][2] = mct_hyperdual_constant(0);
+    }
+}
+
+#define SWITCHES MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB
+static const uint32_t switches[] = {SWITCHES, 0};
+
+MCT_KERNELS_3(seed, k->step.remainder, 1, SWITCHES, mct_seed(derivative, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_3(euler, k->step.remainder, 1, SWITCHES,
+              mct_euler(kick_implicit, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_3(leap, k->step.remainder, 1, SWITCHES,
+              mct_leap(kick_symmetric, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_3(rk4, k->step.sixth_remainder, 1, SWITCHES,
+              mct_rk4(derivative_at, 0, k, k->step, effects, 1, x, u, dx))
+
+static mct_kernel kernel(int stepper, uint32_t effects)
+{
+    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+        [MCT_STEPPER_SEED] = seed_kernels,
+        [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,
+        [MCT_STEPPER_RK4] = rk4_kernels,
+    };
+    return mct_switched_kernel_of(kernels, switches, stepper, effects);
+}
+
+const mct_system mct_solid_pendulum = {
+    .name = "solid_pendulum",
+    .doc = "a box on an axle",
+    .source = "5.4.1, 5.5.2",
+    .coordinate_count = 1,
+    .coordinates = coordinates,
+    .parameter_count = PARAMETERS,
+    .parameters = parameters,
+    .input_without_motor = &torque_field,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB,
+    .standard_effects = MCT_GRAVITY | MCT_VISCOUS,
+    .particle_count = PARTICLES,
+    .particle_names = particle_names,
+    .prepare = prepare,
+    .evaluate = evaluate,
+    .place = place,
+    .kernel = kernel,
+};

@@ -1,0 +1,430 @@
+/*
+ * Spring pendulum: a ball of mass m slides on a rod that turns about a fixed pivot; a spring of stiffness k and rest
+ * length l0 pulls it along the rod.
+ *
+ * Equation      M(q) a + C(q,v) v = tau,  q = (r, th),  v = (rd, w):
+ *                   [ m   0     ]        [ -m r w^2   ]         [ -k (r - l0) - k1 rd - m g sin th ]
+ *               M = [ 0   m r^2 ]  C v = [ 2 m r rd w ]   tau = [ torque - k2 w - m g r cos th     ]
+ * Source        section 1.3, eqs. 40-53.
+ * Conventions   r from the pivot, positive; th counterclockwise from axis 1, -pi/2 hangs.
+ * Differences   none in the equations; the rest length is ours, the source has l0 = 0. Weight, spring and k1 are
+ *               forces on the ball; torque and k2 are couples, which the rod transmits.
+ * Constraint    the rod, e = m xdd - (weight + spring + friction along the rod): (torque - k2 w) / r across it.
+ * Integration   M is singular at r = 0, where the ball may pass, the motion is not: but for `seed`, a step is made in
+ *               Cartesian coordinates along and across the rod as it stands at its start,
+ *                   xdd = g' - k/m (1 - l0/R) X - k1/m (X.xd) X / R^2 + (torque - k2 w) / (m R^2) (-X2, X1),
+ *               and its increments are turned into polar ones without a difference of large numbers. A ball that
+ *               passes the pivot comes out on the other side: r stays positive, th jumps by half a turn.
+ * Validity      m, k > 0; steps short against sqrt(m/k) and m/k1: else refused. With k2 or a torque the equation has no
+ *               limit at r = 0: starting where a step does not resolve it is refused, a step that leads there fails
+ *               (mct_plant.diverged_ticks). With l0 > 0 the spring's force has a kink at r = 0, and a step across it
+ *               is of first order.
+ */
+#include "mctau/spring_pendulum.h"
+
+#include "../steppers/euler.h"
+#include "../steppers/leap.h"
+#include "../steppers/rk4_plain.h"
+#include "../steppers/seed.h"
+#include "kernels.h"
+#include "mctau/arctan.h"
+#include "mctau/matrix.h"
+#include "mctau/scene.h"
+#include "mctau/sincos.h"
+#include "systems.h"
+
+typedef mct_spring_pendulum_constants constants_t;
+
+enum { MASS, STIFFNESS, REST_LENGTH, LENGTH_FRICTION, ANGLE_FRICTION, GRAVITY, PARAMETERS };
+
+static const mct_field parameters[PARAMETERS] = {
+    [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 0.5, "ball"),
+    [STIFFNESS] = MCT_QUANTITY("stiffness", "N/m", 0, 1e9, 40, "of the spring"),
+    [REST_LENGTH] = MCT_QUANTITY("rest_length", "m", 0, 1e4, 0.3, "of the spring; 0 in the source"),
+    [LENGTH_FRICTION] =
+        MCT_QUANTITY("length_friction", "N s/m", 0, 1e6, 0.02, "viscous friction along the rod"),
+    [ANGLE_FRICTION] =
+        MCT_QUANTITY("angle_friction", "N m s", 0, 1e6, 0.001, "viscous friction of the pivot"),
+    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+};
+
+static const mct_coordinate coordinates[2] = {
+    {.position = MCT_QUANTITY("length", "m", 1e-6, 1e6, 0.42, "pivot to ball"),
+     .rate = MCT_QUANTITY("length_rate", "m/s", -1e6, 1e6, 0, "")},
+    {.position = MCT_QUANTITY("angle", "rad", -1e6, 1e6, 0, "counterclockwise from horizontal"),
+     .rate = MCT_QUANTITY("angle_rate", "rad/s", -1e6, 1e6, 0, ""),
+     .is_angle = true},
+};
+
+static const mct_field torque_field = MCT_QUANTITY("torque", "N m", -1e9, 1e9, 0, "on the rod");
+static const char *const particle_names[] = {"ball"};
+
+/* What a step resolves, each as a number without unit. */
+#define LONGEST_PHASE    2.0   /* h sqrt(k/m): `euler` and `leap` are unstable beyond, `rk4` at 2.8 */
+#define LONGEST_DAMPING  2.0   /* h k1/m */
+#define FASTEST_FRICTION 1.0   /* h k2/(m r^2) */
+#define FASTEST_TORQUE   0.1   /* h^2 torque/(m r^2) */
+#define PIVOT_SQUARE     1e-24 /* [m^2] this near, polar coordinates say nothing about the velocity */
+
+static mct_status refuse(struct mct_message *why, const char *key, double found, const char *unit,
+                         const char *reason, double allowed)
+{
+    mct_message_add(why, key);
+    mct_message_add(why, ": found ");
+    mct_message_add_number(why, found);
+    mct_message_add(why, unit);
+    mct_message_add(why, reason);
+    mct_message_add_number(why, allowed);
+    mct_message_add(why, unit);
+    return MCT_ERROR_RANGE;
+}
+
+static mct_status check(const struct mct_scene *scene, double h, struct mct_message *why)
+{
+    const double *p = scene->parameters;
+    const double m = p[MASS];
+    const double r = scene->initial[0];
+    const bool viscous = scene->effects & MCT_VISCOUS;
+    const double stiffest = m * (LONGEST_PHASE / h) * (LONGEST_PHASE / h);
+    const double densest = m * LONGEST_DAMPING / h;
+    const double roughest = FASTEST_FRICTION * m * r * r / h;
+    if ((scene->effects & MCT_SPRING) && p[STIFFNESS] > stiffest) {
+        return refuse(why, "parameters.stiffness", p[STIFFNESS], " N/m",
+                      ", an oscillation too fast for a step of this length; allowed up to ", stiffest);
+    }
+    if (viscous && p[LENGTH_FRICTION] > densest) {
+        return refuse(why, "parameters.length_friction", p[LENGTH_FRICTION], " N s/m",
+                      ", a decay too fast for a step of this length; allowed up to ", densest);
+    }
+    if (!(r > 0)) {
+        return refuse(why, "initial.length", r, " m", ", where the angle says nothing; allowed above ", 0);
+    }
+    if (viscous && p[ANGLE_FRICTION] > roughest) {
+        return refuse(why, "initial.length", r, " m",
+                      ", where angle_friction acts too fast for a step of this length; allowed from ",
+                      mct_sqrt(h * p[ANGLE_FRICTION] / (FASTEST_FRICTION * m)));
+    }
+    return MCT_OK;
+}
+
+static mct_status prepare(const struct mct_scene *scene, double h, void *constants, struct mct_message *why)
+{
+    constants_t *k = constants;
+    const double *p = scene->parameters;
+    const double m = p[MASS];
+    const bool viscous = scene->effects & MCT_VISCOUS;
+    const double stiffness = (scene->effects & MCT_SPRING) ? p[STIFFNESS] : 0;
+    const double length_viscous = viscous ? p[LENGTH_FRICTION] : 0;
+    const double angle_viscous = viscous ? p[ANGLE_FRICTION] : 0;
+    k->step = mct_step_of(h);
+    k->mass = (mct_real)m;
+    k->inverse_mass = (mct_real)(1 / m);
+    k->stiffness = (mct_real)stiffness;
+    k->rest_length = (mct_real)p[REST_LENGTH];
+    k->length_viscous = (mct_real)length_viscous;
+    k->angle_viscous = (mct_real)angle_viscous;
+    k->gravity = (mct_real)((scene->effects & MCT_GRAVITY) ? p[GRAVITY] : 0);
+    k->stiffness_rate = (mct_real)(stiffness / m);
+    k->rest_rate = (mct_real)(stiffness * p[REST_LENGTH] / m);
+    k->length_damping = (mct_real)(length_viscous / m);
+    k->angle_damping = (mct_real)(angle_viscous / m);
+    k->near_friction = (mct_real)(h * angle_viscous / (FASTEST_FRICTION * m));
+    k->near_torque = (mct_real)(h * h / (FASTEST_TORQUE * m));
+    return check(scene, h, why);
+}
+
+/* ---- a step in the frame of the rod as it stands at the start of the step: axis 1 along it, axis 2 across ---- */
+
+typedef struct {
+    const constants_t *k;
+    mct_real along;  /* gravity along the rod [m/s^2] */
+    mct_real across; /* and across it */
+} frame;
+
+MCT_INLINE frame frame_at(const constants_t *k, unsigned effects, mct_real angle)
+{
+    frame now = {k, 0, 0};
+    if (effects & MCT_GRAVITY) {
+        mct_real s, c;
+        mct_sincos(angle, &s, &c);
+        now.along = -k->gravity * s;
+        now.across = -k->gravity * c;
+    }
+    return now;
+}
+
+/* Acceleration by weight, spring and torque; `inverse_square` is 1 / R^2 there. */
+MCT_INLINE void accelerate(const frame *now, unsigned effects, const mct_real *y, mct_real square,
+                           mct_real inverse_square, mct_real u, mct_real *a)
+{
+    const constants_t *k = now->k;
+    const mct_real turning = k->inverse_mass * u * inverse_square;
+    a[0] = -turning * y[1];
+    a[1] = turning * y[0];
+    if (effects & MCT_GRAVITY) {
+        a[0] += now->along;
+        a[1] += now->across;
+    }
+    if (effects & MCT_SPRING) {
+        mct_real pull = k->stiffness_rate;
+        if (k->rest_rate > 0) {
+            pull -= k->rest_rate * mct_inverse_root(square);
+        }
+        a[0] -= pull * y[0];
+        a[1] -= pull * y[1];
+    }
+}
+
+/* R^2, never 0: at the pivot itself what points along the rod vanishes. */
+MCT_INLINE mct_real square_of(const mct_real *y)
+{
+    const mct_real smallest = MCT_REAL_IS_FLOAT ? MCT_R(1e-36) : MCT_R(1e-290);
+    return y[0] * y[0] + y[1] * y[1] + smallest;
+}
+
+/* y = (X, Xd), rates of both. */
+MCT_INLINE void derivative(const void *self, unsigned effects, const mct_real *y, mct_real u, mct_real *dy)
+{
+    const frame *now = self;
+    const constants_t *k = now->k;
+    const mct_real square = square_of(y);
+    const mct_real inverse_square = 1 / square;
+    dy[0] = y[2];
+    dy[1] = y[3];
+    accelerate(now, effects, y, square, inverse_square, u, dy + 2);
+    if (effects & MCT_VISCOUS) {
+        const mct_real radial = k->length_damping * (y[0] * y[2] + y[1] * y[3]) * inverse_square;
+        const mct_real rate = (y[0] * y[3] - y[1] * y[2]) * inverse_square;
+        const mct_real turning = k->angle_damping * rate * inverse_square;
+        dy[2] -= radial * y[0] - turning * y[1];
+        dy[3] -= radial * y[1] + turning * y[0];
+    }
+}
+
+/* Velocity increment; damping is taken at the new velocity (`share` 1: euler) or at the mean of both (1/2: leap). */
+MCT_INLINE void kick(const frame *now, unsigned effects, const mct_real *y, mct_real u, mct_real share,
+                     mct_real *dy)
+{
+    const constants_t *k = now->k;
+    const mct_real h = k->step.h;
+    const mct_real square = square_of(y);
+    const mct_real inverse_square = 1 / square;
+    mct_real a[2];
+    accelerate(now, effects, y, square, inverse_square, u, a);
+    if (effects & MCT_VISCOUS) { /* along and across the rod as it stands at y, times R */
+        const mct_real length_damping = h * k->length_damping;
+        const mct_real angle_damping = h * k->angle_damping * inverse_square;
+        const mct_real along =
+            (h * (y[0] * a[0] + y[1] * a[1]) - length_damping * (y[0] * y[2] + y[1] * y[3])) /
+            (1 + share * length_damping);
+        const mct_real across =
+            (h * (y[0] * a[1] - y[1] * a[0]) - angle_damping * (y[0] * y[3] - y[1] * y[2])) /
+            (1 + share * angle_damping);
+        dy[2] = (along * y[0] - across * y[1]) * inverse_square;
+        dy[3] = (along * y[1] + across * y[0]) * inverse_square;
+    } else {
+        dy[2] = h * a[0];
+        dy[3] = h * a[1];
+    }
+}
+
+MCT_INLINE void kick_implicit(const void *self, unsigned effects, const mct_real *y, mct_real u, mct_real *dy)
+{
+    kick(self, effects, y, u, 1, dy);
+}
+
+MCT_INLINE void kick_symmetric(const void *self, unsigned effects, const mct_real *y, mct_real u,
+                               mct_real *dy)
+{
+    kick(self, effects, y, u, MCT_R(0.5), dy);
+}
+
+/* A step that has no result: the plant keeps its state and counts it. */
+MCT_INLINE void fail(mct_real *dx)
+{
+    dx[0] = MCT_REAL_MAX;
+    dx[1] = dx[2] = dx[3] = 0;
+}
+
+/* Whether the step from (r, 0) by (dX, dY) comes nearer to the pivot than friction and torque can be followed. */
+MCT_INLINE bool comes_too_near(const constants_t *k, unsigned effects, mct_real r, const mct_real *dy,
+                               mct_real square, mct_real u)
+{
+    mct_real limit = k->near_torque * (u < 0 ? -u : u);
+    if (effects & MCT_VISCOUS) {
+        limit += k->near_friction;
+    }
+    const mct_real travelled = dy[0] * dy[0] + dy[1] * dy[1];
+    const mct_real towards = -r * dy[0];
+    const bool passes = towards > 0 && towards < travelled;
+    const mct_real passed = r * dy[1];
+    return square < limit || (passes && passed * passed < limit * travelled);
+}
+
+/* Increments of (r, th, rd, w) from those of (X, Xd). */
+MCT_INLINE void to_polar(const constants_t *k, unsigned effects, const mct_real *x, mct_real u,
+                         const mct_real *dy, mct_real *dx)
+{
+    const mct_real r = x[0];
+    const mct_real X = r + dy[0];
+    const mct_real Y = dy[1];
+    const mct_real Xd = x[2] + dy[2];
+    const mct_real Yd = r * x[3] + dy[3];
+    const mct_real square = X * X + Y * Y;
+    if (square < MCT_R(PIVOT_SQUARE) || comes_too_near(k, effects, r, dy, square, u)) {
+        fail(dx);
+        return;
+    }
+    const mct_real inverse = mct_inverse_root(square);
+    const mct_real R = square * inverse;
+    const mct_real X_less_R = X > 0 ? -Y * Y / (R + X) : X - R;
+    dx[0] = (dy[0] * (r + X) + Y * Y) / (R + r);
+    dx[1] = mct_direction(X, Y, R);
+    dx[2] = inverse * (x[2] * X_less_R + X * dy[2] + Y * Yd);
+    dx[3] = inverse * inverse * (X * dy[3] - x[3] * (X * dy[0] + Y * Y) - Y * Xd);
+}
+
+/* ---- in polar coordinates ---- */
+
+MCT_INLINE void polar_derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                                 mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real r = x[0];
+    const mct_real rd = x[2];
+    const mct_real w = x[3];
+    const mct_real inverse = 1 / r;
+    mct_real radial = r * w * w;
+    mct_real turning = k->inverse_mass * u * inverse;
+    if (effects & MCT_SPRING) {
+        radial -= k->stiffness_rate * r - k->rest_rate;
+    }
+    if (effects & MCT_VISCOUS) {
+        radial -= k->length_damping * rd;
+        turning -= k->angle_damping * w * inverse;
+    }
+    if (effects & MCT_GRAVITY) {
+        mct_real s, c;
+        mct_sincos(x[1], &s, &c);
+        radial -= k->gravity * s;
+        turning -= k->gravity * c;
+    }
+    dx[0] = rd;
+    dx[1] = w;
+    dx[2] = radial;
+    dx[3] = (turning - 2 * rd * w) * inverse;
+}
+
+/* The source's own step, in the source's coordinates, which end at the pivot. */
+MCT_INLINE void polar_seed(const constants_t *k, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
+{
+    mct_seed(polar_derivative, k, k->step, effects, 2, x, u, dx);
+    const mct_real r = x[0] + dx[0];
+    const mct_real dy[2] = {dx[0], r * dx[1]};
+    if (!(r > 0) || comes_too_near(k, effects, x[0], dy, r * r, u)) {
+        fail(dx);
+    }
+}
+
+/* A step in the frame of the rod, by one of the steppers: `step` from `y` to the increments `dy`. */
+#define STEP_IN_FRAME(name, step)                                                               \
+    MCT_INLINE void name(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, \
+                         mct_real *dx)                                                          \
+    {                                                                                           \
+        const frame now = frame_at(k, effects, x[1]);                                           \
+        const mct_real y[4] = {x[0], 0, x[2], x[0] * x[3]};                                     \
+        mct_real dy[4];                                                                         \
+        step;                                                                                   \
+        to_polar(k, effects, x, u, dy, dx);                                                     \
+    }
+STEP_IN_FRAME(framed_euler, mct_euler(kick_implicit, &now, k->step, effects, 2, y, u, dy))
+STEP_IN_FRAME(framed_leap, mct_leap(kick_symmetric, &now, k->step, effects, 2, y, u, dy))
+STEP_IN_FRAME(framed_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
+
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
+{
+    const constants_t *k = constants;
+    const mct_real m = k->mass;
+    const mct_real r = x[0];
+    const mct_real rd = x[2];
+    const mct_real w = x[3];
+    const mct_real stretch = r - k->rest_length;
+    mct_real s, c;
+    (void)effects;
+    mct_sincos(x[1], &s, &c);
+    *out = (mct_evaluation){0};
+    out->M[0][0] = m;
+    out->M[1][1] = m * r * r;
+    out->C[0][1] = -m * r * w;
+    out->C[1][0] = m * r * w;
+    out->C[1][1] = m * r * rd;
+    out->Cv[0] = -m * r * w * w;
+    out->Cv[1] = 2 * m * r * rd * w;
+    const mct_real couple = u - k->angle_viscous * w;
+    out->tau[0] = -k->stiffness * stretch - k->length_viscous * rd - m * k->gravity * s;
+    out->tau[1] = couple - m * k->gravity * r * c;
+    out->acceleration[0] = k->inverse_mass * (out->tau[0] - out->Cv[0]);
+    out->acceleration[1] = (out->tau[1] - out->Cv[1]) / out->M[1][1];
+    out->mass[0] = m;
+    out->position[0][0] = r * c;
+    out->position[0][1] = r * s;
+    out->constraint_force[0][0] = -couple / r * s;
+    out->constraint_force[0][1] = couple / r * c;
+    out->kinetic_energy = MCT_R(0.5) * m * (rd * rd + r * r * w * w);
+    out->potential_energy = m * k->gravity * r * s + MCT_R(0.5) * k->stiffness * stretch * stretch;
+    out->power_input = u * w;
+    out->power_viscous = -k->length_viscous * rd * rd - k->angle_viscous * w * w;
+}
+
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
+{
+    mct_hyperdual s, c;
+    (void)constants;
+    (void)time;
+    mct_hyperdual_sincos(q[1], &s, &c);
+    position[0][0] = mct_hyperdual_mul(q[0], c);
+    position[0][1] = mct_hyperdual_mul(q[0], s);
+    position[0][2] = mct_hyperdual_constant(0);
+}
+
+#define friction mct_no_friction
+#define SWITCHES MCT_GRAVITY, MCT_SPRING, MCT_VISCOUS
+static const uint32_t switches[] = {SWITCHES, 0};
+
+MCT_KERNELS_3(seed, k->step.remainder, 2, SWITCHES, polar_seed(k, effects, x, u, dx))
+MCT_KERNELS_3(euler, k->step.remainder, 2, SWITCHES, framed_euler(k, effects, x, u, dx))
+MCT_KERNELS_3(leap, k->step.remainder, 2, SWITCHES, framed_leap(k, effects, x, u, dx))
+MCT_KERNELS_3(rk4, k->step.sixth_remainder, 2, SWITCHES, framed_rk4(k, effects, x, u, dx))
+
+static mct_kernel kernel(int stepper, uint32_t effects)
+{
+    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+        [MCT_STEPPER_SEED] = seed_kernels,
+        [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,
+        [MCT_STEPPER_RK4] = rk4_kernels,
+    };
+    return mct_switched_kernel_of(kernels, switches, stepper, effects);
+}
+
+const mct_system mct_spring_pendulum = {
+    .name = "spring_pendulum",
+    .doc = "a ball on a spring that turns about a pivot",
+    .source = "1.3",
+    .coordinate_count = 2,
+    .coordinates = coordinates,
+    .parameter_count = PARAMETERS,
+    .parameters = parameters,
+    .input_without_motor = &torque_field,
+    .effects = MCT_GRAVITY | MCT_SPRING | MCT_VISCOUS,
+    .standard_effects = MCT_GRAVITY | MCT_SPRING | MCT_VISCOUS,
+    .particle_count = 1,
+    .particle_names = particle_names,
+    .prepare = prepare,
+    .evaluate = evaluate,
+    .place = place,
+    .kernel = kernel,
+};
