@@ -485,13 +485,15 @@ static void explain_silence(mct_can *self, mct_message *why)
     listen_until(self, 0.1, never);
     if (self->link != MCT_CAN_UP && self->link != MCT_CAN_UNSENT) {
         mct_message_add(why, mct_can_link_text(self->link));
-    } else if (counts[MCT_CAN_COUNT_BUS_ERRORS] > 0) {
+    } else if (counts[MCT_CAN_COUNT_BUS_ERRORS] + counts[MCT_CAN_COUNT_ERROR_PASSIVE] > 0) {
         mct_message_add(why, "the bus carries errors: look for a wrong bit rate, wiring or termination");
     } else if (counts[MCT_CAN_COUNT_NO_ACKNOWLEDGE] > 0 || self->link == MCT_CAN_UNSENT) {
         mct_message_add(
             why, "nobody on the bus acknowledges: look at the drive's supply, the wiring and the bit rate");
     } else {
-        mct_message_add(why, "look at the drive's supply, its node number and its bit rate");
+        mct_message_add(why,
+                        "look at the drive's supply, its node number (can.node), its protocol (can.protocol) "
+                        "and its bit rate");
     }
 }
 
@@ -499,6 +501,8 @@ static void explain_silence(mct_can *self, mct_message *why)
 static bool check_heard(mct_can *self, mct_message *why)
 {
     mct_can_report *report = &self->report;
+    const bool is_paced =
+        !self->lockstep || self->transport.ops->simulated; /* else by how busy the machine is */
     uint64_t all = 0;
     for (int i = 0; i < report->heard_count; i++) {
         mct_can_heard *heard = &report->heard[i];
@@ -515,7 +519,7 @@ static bool check_heard(mct_can *self, mct_message *why)
             mct_message_add_number(why, self->scene->can_startup);
             mct_message_add(why, " s; ");
             if (all == 0) {
-                mct_message_add(why, "nothing else has: ");
+                mct_message_add(why, "nor has any other of its messages: ");
                 explain_silence(self, why);
             } else {
                 mct_message_add(
@@ -523,7 +527,7 @@ static bool check_heard(mct_can *self, mct_message *why)
             }
             return false;
         }
-        if (heard->period > heard->slowest || heard->count < 2) {
+        if (is_paced && (heard->period > heard->slowest || heard->count < 2)) {
             add_message(why, heard);
             mct_message_add(why, " comes every ");
             mct_message_add_number(why, 1e3 * heard->period);
@@ -565,6 +569,7 @@ static bool has_watchdog_acted(const mct_can *self)
 /* Zero volts, ready. */
 static bool get_ready(mct_can *self, mct_message *why)
 {
+    const uint64_t received = self->counts.values[MCT_CAN_COUNT_RECEIVED];
     bool ready = false;
     can_arm(self);
     for (int i = 0; i < ARMING_US / ARM_AGAIN_US && !ready; i++) {
@@ -579,6 +584,11 @@ static bool get_ready(mct_can *self, mct_message *why)
         mct_message_add(why, "node ");
         mct_message_add_integer(why, axis->node);
         mct_message_add(why, ": the drive does not get ready");
+        if (self->counts.values[MCT_CAN_COUNT_RECEIVED] == received) {
+            mct_message_add(why,
+                            ": nothing has come since it was asked to; look at its supply and its wiring");
+            return false;
+        }
         if (axis->error != 0) {
             mct_message_add(why, ", it reports error ");
             mct_message_add_integer(why, axis->error);
@@ -602,7 +612,7 @@ static bool check_watchdog(mct_can *self, mct_message *why)
         mct_message_add_number(why, 2 * timeout + 0.5);
         mct_message_add(why, " s without commands; set the drive's own watchdog to ");
         mct_message_add_number(why, timeout);
-        mct_message_add(why, " s (can.watchdog)");
+        mct_message_add(why, " s (can.watchdog); or another drive or host with this number feeds it");
         return false;
     }
     self->report.watchdog_verified = true;

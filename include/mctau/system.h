@@ -80,25 +80,31 @@ typedef void (*mct_kernel)(const void *constants, mct_state *state, mct_real inp
 typedef struct {
     mct_field position;
     mct_field rate;
-    bool is_angle;          /**< kept within a turn; its encoder counts per turn, else per metre */
-    bool is_cyclic;         /**< no force depends on it: not brought home by a controller */
-    mct_field encoder;      /**< counts per turn or metre, a key of [sensors] */
-    mct_field encoder_node; /**< drive that reads it, a key of [can] */
+    bool is_angle;           /**< kept within a turn; its encoder counts per turn, else per metre */
+    bool is_cyclic;          /**< no force depends on it: not brought home by a controller */
+    mct_field encoder;       /**< counts per turn or metre, a key of [sensors] */
+    mct_field encoder_node;  /**< drive that reads it, a key of [can] */
     mct_field encoder_ratio; /**< turns of the drive's encoder per turn or metre, a key of [can] */
-    double position_weight; /**< default deviation that costs a controller as much as the full input */
+    double position_weight;  /**< default deviation that costs a controller as much as the full input */
     double rate_weight;
 } mct_coordinate;
 
 /** The three keys of an encoder, as MCT_ENCODER("arm", "turn", "1/turn", 4, 4096, "the arm"). */
-#define MCT_ENCODER(name, per, unit, fewest, standard, what)                                                        \
-    .encoder = {name "_counts_per_" per, unit, "encoder of " what, MCT_FIELD_REAL, fewest, 1e9, standard, \
-                NULL, 0},                                                                                     \
-    .encoder_node = {name "_node", "",                                                                        \
-                     "drive that reads the encoder of " what                                                  \
-                     "; -1: the motor's where it can, else the next number",                                  \
-                     MCT_FIELD_INTEGER, -1, 63, -1, NULL, 0},                                                 \
-    .encoder_ratio = MCT_QUANTITY(name "_ratio", "", -1e4, 1e4, 1,                                            \
-                                  "turns of the drive's encoder per " per " of " what                         \
+#define MCT_ENCODER(name, per, unit, fewest, standard, what)                                                 \
+    .encoder =                                                                                               \
+        {name "_counts_per_" per, unit, "encoder of " what, MCT_FIELD_REAL, fewest, 1e9, standard, NULL, 0}, \
+    .encoder_node = {name "_node",                                                                           \
+                     "",                                                                                     \
+                     "drive that reads the encoder of " what                                                 \
+                     "; -1: the motor's where it can, else the next number",                                 \
+                     MCT_FIELD_INTEGER,                                                                      \
+                     -1,                                                                                     \
+                     63,                                                                                     \
+                     -1,                                                                                     \
+                     NULL,                                                                                   \
+                     0},                                                                                     \
+    .encoder_ratio = MCT_QUANTITY(name "_ratio", "", -1e4, 1e4, 1,                                           \
+                                  "turns of the drive's encoder per " per " of " what                        \
                                   "; negative: mounted the other way round")
 
 typedef struct mct_system {

@@ -228,7 +228,7 @@ def test_a_recorded_bus_leads_to_the_same_commands(result, mctau, source, tmp_pa
     done = mctau("run", source / "scenes" / "reaction_wheel.toml", "--hal", f"candump:{path}", "--duration",
                  bus.SECONDS, *options("native").replace("--set can.lockstep=true", "").split())  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
-    found = re.search(r"of the commands, (\d+) stand in the log, (\d+) of them differ", done.stdout)
+    found = re.search(r"commands against the recorded ones: (\d+) found, (\d+) of them differ", done.stdout)
     assert found, done.stdout
     assert int(found[1]) >= TICKS["native"] and int(found[2]) == 0
 

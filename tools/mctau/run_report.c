@@ -307,8 +307,10 @@ void print_start(const mct_can_report *can, FILE *file)
                                    : "cannot be tried over this protocol: make sure of it in the drive");
     for (int i = 0; i < can->heard_count; i++) {
         const mct_can_heard *heard = &can->heard[i];
-        fprintf(file, "  node %2d  %-28s every %8.2f ms (allowed up to %g ms)\n", heard->node,
-                heard->message->name, 1e3 * heard->period, 1e3 * heard->slowest);
+        const bool too_often = heard->message->period == 0 && heard->period < 0.7 * heard->slowest / 3;
+        fprintf(file, "  node %2d  %-28s every %8.2f ms (allowed up to %g ms)%s\n", heard->node,
+                heard->message->name, 1e3 * heard->period, 1e3 * heard->slowest,
+                too_often ? "; more than once a tick: two drives with this number?" : "");
     }
 }
 
@@ -323,8 +325,8 @@ static void print_can(const run_result *result, FILE *file)
     }
     if (result->has_recording) {
         fprintf(file,
-                "  of the commands, %" PRIu64 " stand in the log, %" PRIu64 " of them differ; %" PRIu64
-                " do not\n",
+                "  commands against the recorded ones: %" PRIu64 " found, %" PRIu64
+                " of them differ; %" PRIu64 " not found\n",
                 result->compared, result->mismatches, result->unmatched);
     }
     const mct_histogram *round_trip = &result->timing.round_trip;

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "csv_output.h"
 #include "hal/clock.h"
@@ -232,6 +233,9 @@ static mct_status prepare(drive_run *self, mct_message *why)
     self->last_outside = never;
     self->least_deviation = TURN;
     mct_status status = mct_can_drive_init(&self->drive, scene, bus, why);
+    for (int i = 0; i < self->drive.device_count; i++) {
+        self->drive.devices[i].serial = (uint16_t)getpid(); /* two of them on one bus are two */
+    }
     self->reader = *plant_of(self);
     return status != MCT_OK ? status : open_csv(self, why);
 }
