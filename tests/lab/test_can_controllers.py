@@ -13,9 +13,8 @@ from lab import bus, machine
 cantools = pytest.importorskip("cantools")
 
 OPTIONS = f"--set can.lockstep=true --set parameters.supply_voltage={bus.SUPPLY}"
-# What a recording cannot repeat is left out of the run that is replayed: see docs/can.md.
-# The others have half the ticks, to save time: 500 Hz.
-EXTRA = {"native": "--set can.watchdog=0", "vesc": "--set scene.dt=0.002", "odrive": "--set scene.dt=0.002"}
+# VESC and ODrive have half the ticks, to save time: 500 Hz.
+EXTRA = {"native": "", "vesc": "--set scene.dt=0.002", "odrive": "--set scene.dt=0.002"}
 TICKS = {"native": int(bus.SECONDS * 1000), "vesc": int(bus.SECONDS * 500), "odrive": int(bus.SECONDS * 500)}
 COUNTS_PER_TURN = 4096  # of both encoders, as the scene has it
 DUTY_STEP = 1e-5
