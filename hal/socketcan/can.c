@@ -57,7 +57,7 @@ static mct_can_verdict take(mct_can *self, const mct_can_frame *frame)
         mct_can_axis *axis = &self->axes.axes[i];
         const mct_can_drive_state before = axis->state;
         verdict = self->axes.protocol->hear(axis, frame);
-        if (axis->state == MCT_CAN_DRIVE_FAULTY && before != MCT_CAN_DRIVE_FAULTY) {
+        if (axis->state == MCT_CAN_DRIVE_FAULTY && before != MCT_CAN_DRIVE_FAULTY && !self->stopped) {
             mct_can_counted(&self->counts, MCT_CAN_COUNT_DRIVE_FAULTS);
         }
         for (int j = 0; verdict == MCT_CAN_IS_FEEDBACK && j < MCT_CAN_ENCODERS; j++) {
@@ -630,6 +630,10 @@ static mct_status start(mct_can *self, mct_message *why)
     command(self, 0);
     for (int i = 0; i < self->axes.count; i++) {
         self->restarts[i] = self->axes.axes[i].restarts;
+    }
+    for (int i = 0; i < mct_systems[self->scene->system]->coordinate_count; i++) {
+        mct_can_axis *axis;
+        self->updates[i] = mct_can_encoder_of(&self->axes, i, &axis)->updates - 1; /* the newest is yet to be read */
     }
     self->invalid = false;
     self->estop = false;

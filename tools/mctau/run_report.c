@@ -283,7 +283,8 @@ static void print_faults(const run_report *report, FILE *file)
         fputs("\nFaults: none\n", file);
     }
     if (result->rearmed > 0) {
-        fprintf(file, "  cleared and armed again %" PRIu64 " times\n", result->rearmed);
+        fprintf(file, "  armed again after faults: %" PRIu64 " time%s\n", result->rearmed,
+                result->rearmed > 1 ? "s" : "");
     }
     char limited[64];
     snprintf(limited, sizeof limited, "the voltage was at its limit of %g V", result->limit);

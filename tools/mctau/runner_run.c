@@ -583,8 +583,13 @@ static mct_status execute(run *self, run_result *result, mct_message *why)
         result->energy_start = runner_energies(&at);
     }
     self->started_ns = now_ns();
+    if (self->log_text != NULL) {
+        mct_message_add(why, self->scene->hal + sizeof "candump");
+        mct_message_add(why, ": ");
+    }
     const mct_status status = hal->ops->open(hal->context, why);
     if (status == MCT_OK) {
+        mct_message_clear(why);
         self->drive.held = false; /* from here on each tick moves it */
         if (hal->context == &self->can && self->options->started != NULL) {
             self->options->started(&self->can.report);
