@@ -523,7 +523,9 @@ static void fill_can(run *self, run_result *result)
     const mct_counters counters = hal->ops->counters(hal->context);
     result->counters = counters.counters;
     result->counter_count = counters.count;
-    memcpy(result->counts, counters.values, sizeof counters.values[0] * (size_t)counters.count);
+    for (int i = 0; i < counters.count; i++) {
+        result->counts[i] = counters.values[i];
+    }
     result->has_can = hal->context == &self->can;
     result->can = self->can.report;
     result->has_recording = self->log_text != NULL;
