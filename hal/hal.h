@@ -32,8 +32,8 @@ enum {
 /** What the sensors say at a tick. */
 typedef struct {
     int32_t counts[MCT_MAX_ENCODERS]; /**< encoder counters as the hardware has them; they wrap */
-    uint32_t age_us;                     /**< time since the newest counts were captured */
-    uint32_t flags;                      /**< MCT_READING_... */
+    uint32_t age_us;                  /**< time since the newest counts were captured */
+    uint32_t flags;                   /**< MCT_READING_... */
 } mct_reading;
 
 /** A histogram of times: bin b holds [2^(b-1), 2^b) us, bin 0 below 1 us, the last one all beyond. */

@@ -24,8 +24,10 @@
 #include "mctau_tick_t.h"
 
 enum {
-    TICK_SIZE = 128 + 4 * MCT_MAX_COORDINATES + 20 * MCT_MAX_ENCODERS + 16 * MCT_MAX_STATES, /* bytes of a tick_t, at most */
-    HEALTH_SIZE = 256 + 8 * (4 * (MCT_HISTOGRAM_BINS + 1) + MCT_FAULT_COUNT + MCT_MODE_COUNT + MCT_MAX_COUNTERS),
+    TICK_SIZE = 128 + 4 * MCT_MAX_COORDINATES + 20 * MCT_MAX_ENCODERS +
+                16 * MCT_MAX_STATES, /* of a tick_t, at most */
+    HEALTH_SIZE =
+        256 + 8 * (4 * (MCT_HISTOGRAM_BINS + 1) + MCT_FAULT_COUNT + MCT_MODE_COUNT + MCT_MAX_COUNTERS),
     EVENT_HEADER = 28,      /* bytes of a log's event before its channel */
     HEALTHS_PER_SCENE = 10, /* the scene is repeated every second */
     STACK_SIZE = 256 * 1024,

@@ -21,7 +21,7 @@ typedef struct {
     double turn_counts[MCT_MAX_ENCODERS];  /**< counts per turn or metre */
     double unit_counts[MCT_MAX_ENCODERS];  /**< counts per radian or metre */
     double start_counts[MCT_MAX_ENCODERS]; /**< at the initial position */
-    double noise;                             /**< standard deviation [counts] */
+    double noise;                          /**< standard deviation [counts] */
     uint32_t seed;
     uint32_t counter_shift; /**< 32 - bits of the counters */
     uint32_t latency;       /**< [ticks] */

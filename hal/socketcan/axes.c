@@ -23,15 +23,32 @@ static mct_status check_mode(const mct_scene *scene, mct_message *why)
 {
     if (!(scene->effects & MCT_MOTOR)) {
         mct_message_clear(why);
-        mct_message_add(why, "scene.hal: found a CAN bus with effects.motor off; allowed a motor, since a drive is "
-                             "told volts");
+        mct_message_add(
+            why, "scene.hal: found a CAN bus with effects.motor off; allowed a motor, since a drive is "
+                 "told volts");
         return MCT_ERROR_UNSUITED;
     }
     if (scene->can_mode == MCT_CAN_MODE_FOC && scene->can_protocol != MCT_CAN_VESC) {
         return refuse(why, "mode", "\"foc\", which a vesc alone has", "voltage, or protocol = \"vesc\"");
     }
     if (scene->can_mode == MCT_CAN_MODE_TORQUE && scene->can_protocol != MCT_CAN_ODRIVE) {
-        return refuse(why, "mode", "\"torque\", which an odrive alone has", "voltage, or protocol = \"odrive\"");
+        return refuse(why, "mode", "\"torque\", which an odrive alone has",
+                      "voltage, or protocol = \"odrive\"");
+    }
+    return MCT_OK;
+}
+
+/* A native drive is told its watchdog with each command, in whole milliseconds of a byte. */
+static mct_status check_watchdog(const mct_scene *scene, mct_message *why)
+{
+    const double watchdog = scene->can_watchdog;
+    if (scene->can_protocol == MCT_CAN_NATIVE && watchdog != 0 && !(watchdog >= 0.005 && watchdog <= 0.255)) {
+        mct_message found;
+        mct_message_clear(&found);
+        mct_message_add_number(&found, watchdog);
+        mct_message_add(&found, " s");
+        return refuse(why, "watchdog", found.text,
+                      "0 (none), or 0.005 to 0.255 s, which a native drive can be told");
     }
     return MCT_OK;
 }
@@ -107,11 +124,14 @@ mct_status mct_can_axes_init(mct_can_axes *axes, const mct_scene *scene, mct_mes
 {
     const mct_system *system = mct_systems[scene->system];
     memset(axes, 0, sizeof *axes);
-    axes->protocol = mct_can_protocols[scene->can_protocol];
+    axes->protocol = mct_can_protocol_of(scene);
     mct_status status = check_mode(scene, why);
+    status = status != MCT_OK ? status : check_watchdog(scene, why);
     const int driven = status == MCT_OK ? system->actuation->driven_coordinate : 0;
     if (status == MCT_OK) {
-        axis_of_node(axes, (uint8_t)scene->can_node)->roles = MCT_CAN_OF_MOTOR;
+        const bool is_torque = scene->can_mode == MCT_CAN_MODE_TORQUE;
+        axis_of_node(axes, (uint8_t)scene->can_node)->roles =
+            MCT_CAN_OF_MOTOR | (is_torque ? (uint32_t)MCT_CAN_OF_TORQUE : 0);
         /* A drive's own encoder is that of its motor. */
         status = place_encoder(axes, scene, driven, why);
     }

@@ -21,7 +21,7 @@ typedef struct {
  * @param scene  must outlive the axes
  * @param why    a sentence on failure: "can.key: found ...; allowed ..."
  * @return MCT_OK; MCT_ERROR_UNSUITED (no motor; two encoders on a drive that can read one; a mode that the protocol
- *         has not got)
+ *         has not got; a watchdog that a native drive cannot be told)
  */
 mct_status mct_can_axes_init(mct_can_axes *axes, const mct_scene *scene, mct_message *why);
 

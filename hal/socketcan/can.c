@@ -5,13 +5,14 @@
 #include "mctau/system.h"
 
 enum {
-    MOST_FRAMES = 512,         /* drained at once */
-    LISTEN_US = 1000,          /* between looks while listening */
-    PATIENCE_US = 50000,       /* in lockstep, for an answer */
-    ENOUGH_QUICK = 50,         /* messages that show a period of some ticks */
-    ENOUGH_SLOW = 3,           /* of a period far longer than a tick */
-    ARMING_US = 1000000,       /* for a drive to get ready */
-    ARM_AGAIN_US = 100000      /* between requests */
+    MOST_FRAMES = 512,     /* drained at once */
+    LISTEN_US = 1000,      /* between looks while listening */
+    PATIENCE_US = 50000,   /* in lockstep, for an answer */
+    ENOUGH_QUICK = 50,     /* messages that show a period of some ticks */
+    ENOUGH_SLOW = 3,       /* of a period far longer than a tick */
+    ARMING_US = 1000000,   /* for a drive to get ready */
+    ARM_AGAIN_US = 100000, /* between requests */
+    ALTERNATIONS = 4       /* of an encoder at rest: two of them */
 };
 
 /* --- frames that come --- */
@@ -56,7 +57,7 @@ static mct_can_verdict take(mct_can *self, const mct_can_frame *frame)
         mct_can_axis *axis = &self->axes.axes[i];
         const mct_can_drive_state before = axis->state;
         verdict = self->axes.protocol->hear(axis, frame);
-        if (axis->state == MCT_CAN_DRIVE_FAULTY && before != MCT_CAN_DRIVE_FAULTY) {
+        if (axis->state == MCT_CAN_DRIVE_FAULTY && before != MCT_CAN_DRIVE_FAULTY && !self->stopped) {
             mct_can_counted(&self->counts, MCT_CAN_COUNT_DRIVE_FAULTS);
         }
         for (int j = 0; verdict == MCT_CAN_IS_FEEDBACK && j < MCT_CAN_ENCODERS; j++) {
@@ -116,7 +117,8 @@ static void ask_to_arm(mct_can *self)
 /* --- a tick --- */
 
 /* Time since the newest counts of an encoder were captured. */
-static uint32_t age_of(mct_can *self, int coordinate, const mct_can_encoder *encoder, const mct_can_axis *axis)
+static uint32_t age_of(mct_can *self, int coordinate, const mct_can_encoder *encoder,
+                       const mct_can_axis *axis)
 {
     uint64_t age = (self->tick - self->fresh_tick[coordinate]) * self->tick_us;
     if (!self->lockstep) {
@@ -195,10 +197,26 @@ static void read_drives(mct_can *self, mct_reading *reading)
     }
 }
 
+static void send_stop(mct_can *self)
+{
+    mct_can_frame frames[MCT_CAN_MAX_BURST];
+    send_all(self, frames, self->axes.protocol->stop(&self->axes.axes[0], frames));
+}
+
+/* A stop that was called while the link was down has not been heard. */
+static void tend(mct_can *self)
+{
+    const bool was_down = self->link != MCT_CAN_UP;
+    self->link = self->transport.ops->tend(self->transport.context);
+    if (was_down && self->link == MCT_CAN_UP && self->stopped) {
+        send_stop(self);
+    }
+}
+
 static mct_status can_read(void *context, mct_reading *reading)
 {
     mct_can *self = context;
-    self->link = self->transport.ops->tend(self->transport.context);
+    tend(self);
     drain(self);
     *reading = self->reading;
     reading->flags = 0;
@@ -259,8 +277,7 @@ static mct_status can_wait_tick(void *context)
 static void can_stop(void *context)
 {
     mct_can *self = context;
-    mct_can_frame frames[MCT_CAN_MAX_BURST];
-    send_all(self, frames, self->axes.protocol->stop(&self->axes.axes[0], frames));
+    send_stop(self);
     self->stopped = true;
     self->arming_ticks = 0;
     self->arming_failed = false;
@@ -422,7 +439,8 @@ static bool listen_a_while(mct_can *self, bool (*done)(const mct_can *self))
     mct_can_frame frame;
     transport->ops->wait(transport->context, LISTEN_US);
     self->link = transport->ops->tend(transport->context);
-    for (int i = 0; i < MOST_FRAMES && !done(self) && transport->ops->receive(transport->context, &frame); i++) {
+    for (int i = 0; i < MOST_FRAMES && !done(self) && transport->ops->receive(transport->context, &frame);
+         i++) {
         mct_can_counted(&self->counts, MCT_CAN_COUNT_RECEIVED);
         note_heard(self, &frame);
         take(self, &frame);
@@ -438,8 +456,8 @@ static bool listen_until(mct_can *self, double seconds, bool (*done)(const mct_c
     const int64_t most_us = (int64_t)(seconds * 1e6);
     const int most_looks = (int)(seconds * 1e6 / LISTEN_US) * 100;
     bool is_done = done(self);
-    for (int i = 0; i < most_looks && !is_done && transport->ops->now_us(transport->context) - begin < most_us;
-         i++) {
+    for (int i = 0;
+         i < most_looks && !is_done && transport->ops->now_us(transport->context) - begin < most_us; i++) {
         is_done = listen_a_while(self, done);
     }
     return is_done;
@@ -467,12 +485,15 @@ static void explain_silence(mct_can *self, mct_message *why)
     listen_until(self, 0.1, never);
     if (self->link != MCT_CAN_UP && self->link != MCT_CAN_UNSENT) {
         mct_message_add(why, mct_can_link_text(self->link));
-    } else if (counts[MCT_CAN_COUNT_BUS_ERRORS] > 0) {
+    } else if (counts[MCT_CAN_COUNT_BUS_ERRORS] + counts[MCT_CAN_COUNT_ERROR_PASSIVE] > 0) {
         mct_message_add(why, "the bus carries errors: look for a wrong bit rate, wiring or termination");
     } else if (counts[MCT_CAN_COUNT_NO_ACKNOWLEDGE] > 0 || self->link == MCT_CAN_UNSENT) {
-        mct_message_add(why, "nobody on the bus acknowledges: look at the drive's supply, the wiring and the bit rate");
+        mct_message_add(
+            why, "nobody on the bus acknowledges: look at the drive's supply, the wiring and the bit rate");
     } else {
-        mct_message_add(why, "look at the drive's supply, its node number and its bit rate");
+        mct_message_add(why,
+                        "look at the drive's supply, its node number (can.node), its protocol (can.protocol) "
+                        "and its bit rate");
     }
 }
 
@@ -480,6 +501,8 @@ static void explain_silence(mct_can *self, mct_message *why)
 static bool check_heard(mct_can *self, mct_message *why)
 {
     mct_can_report *report = &self->report;
+    const bool is_paced =
+        !self->lockstep || self->transport.ops->simulated; /* else by how busy the machine is */
     uint64_t all = 0;
     for (int i = 0; i < report->heard_count; i++) {
         mct_can_heard *heard = &report->heard[i];
@@ -496,14 +519,15 @@ static bool check_heard(mct_can *self, mct_message *why)
             mct_message_add_number(why, self->scene->can_startup);
             mct_message_add(why, " s; ");
             if (all == 0) {
-                mct_message_add(why, "nothing else has: ");
+                mct_message_add(why, "nor has any other of its messages: ");
                 explain_silence(self, why);
             } else {
-                mct_message_add(why, "other messages have: switch this one on in the drive, or look at its node number");
+                mct_message_add(
+                    why, "other messages have: switch this one on in the drive, or look at its node number");
             }
             return false;
         }
-        if (heard->period > heard->slowest || heard->count < 2) {
+        if (is_paced && (heard->period > heard->slowest || heard->count < 2)) {
             add_message(why, heard);
             mct_message_add(why, " comes every ");
             mct_message_add_number(why, 1e3 * heard->period);
@@ -516,15 +540,16 @@ static bool check_heard(mct_can *self, mct_message *why)
     return true;
 }
 
-/* Two drives under one number, each with a position of its own: the encoder jumps to and fro. */
+/* Two drives under one number, each with a serial number or a position of its own: the encoder jumps to and fro. */
 static bool check_alone(mct_can *self, mct_message *why)
 {
     for (int i = 0; i < self->axes.count; i++) {
         const mct_can_axis *axis = &self->axes.axes[i];
-        if (axis->serial_changes > 0) {
+        if (axis->serial_changes > 0 || axis->alternations >= ALTERNATIONS) {
             mct_message_add(why, "node ");
             mct_message_add_integer(why, axis->node);
-            mct_message_add(why, ": found two drives with this number; allowed one: give the other one its own");
+            mct_message_add(why,
+                            ": found two drives with this number; allowed one: give the other one its own");
             return false;
         }
     }
@@ -544,6 +569,7 @@ static bool has_watchdog_acted(const mct_can *self)
 /* Zero volts, ready. */
 static bool get_ready(mct_can *self, mct_message *why)
 {
+    const uint64_t received = self->counts.values[MCT_CAN_COUNT_RECEIVED];
     bool ready = false;
     can_arm(self);
     for (int i = 0; i < ARMING_US / ARM_AGAIN_US && !ready; i++) {
@@ -558,6 +584,11 @@ static bool get_ready(mct_can *self, mct_message *why)
         mct_message_add(why, "node ");
         mct_message_add_integer(why, axis->node);
         mct_message_add(why, ": the drive does not get ready");
+        if (self->counts.values[MCT_CAN_COUNT_RECEIVED] == received) {
+            mct_message_add(why,
+                            ": nothing has come since it was asked to; look at its supply and its wiring");
+            return false;
+        }
         if (axis->error != 0) {
             mct_message_add(why, ", it reports error ");
             mct_message_add_integer(why, axis->error);
@@ -581,7 +612,7 @@ static bool check_watchdog(mct_can *self, mct_message *why)
         mct_message_add_number(why, 2 * timeout + 0.5);
         mct_message_add(why, " s without commands; set the drive's own watchdog to ");
         mct_message_add_number(why, timeout);
-        mct_message_add(why, " s (can.watchdog)");
+        mct_message_add(why, " s (can.watchdog); or another drive or host with this number feeds it");
         return false;
     }
     self->report.watchdog_verified = true;
@@ -600,6 +631,11 @@ static mct_status start(mct_can *self, mct_message *why)
     for (int i = 0; i < self->axes.count; i++) {
         self->restarts[i] = self->axes.axes[i].restarts;
     }
+    for (int i = 0; i < mct_systems[self->scene->system]->coordinate_count; i++) {
+        mct_can_axis *axis;
+        self->updates[i] =
+            mct_can_encoder_of(&self->axes, i, &axis)->updates - 1; /* the newest is yet to be read */
+    }
     self->invalid = false;
     self->estop = false;
     memset(&self->counts, 0, sizeof self->counts); /* what the start has tried on purpose is no news */
@@ -613,8 +649,8 @@ static mct_status can_open(void *context, mct_message *why)
     mct_can_filter filters[MCT_CAN_MAX_FILTERS];
     mct_message_clear(&reason);
     self->stopped = true;
-    mct_status status = self->transport.ops->open(self->transport.context, filters, list_filters(self, filters),
-                                                  &self->counts, &reason);
+    mct_status status = self->transport.ops->open(self->transport.context, filters,
+                                                  list_filters(self, filters), &self->counts, &reason);
     if (status == MCT_OK) {
         status = start(self, &reason);
         if (status != MCT_OK) {

@@ -50,19 +50,19 @@ typedef struct {
     uint32_t tick_us;
     mct_can_axes axes;
     /* what was heard */
-    mct_reading reading;                    /**< last given */
-    uint32_t updates[MCT_MAX_ENCODERS];  /**< of each encoder, as last read */
+    mct_reading reading;                   /**< last given */
+    uint32_t updates[MCT_MAX_ENCODERS];    /**< of each encoder, as last read */
     uint64_t fresh_tick[MCT_MAX_ENCODERS]; /**< tick at which each encoder last had something new */
-    uint32_t restarts[MCT_CAN_MAX_AXES];    /**< of each drive, as last read */
-    bool invalid, estop;                    /**< heard since the last read */
+    uint32_t restarts[MCT_CAN_MAX_AXES];   /**< of each drive, as last read */
+    bool invalid, estop;                   /**< heard since the last read */
     mct_can_link_state link;
     /* what is sent */
     uint64_t tick;
-    bool stopped;           /**< zero volts until arm */
-    uint32_t arming_ticks;  /**< left for the drives to get ready */
-    bool arming_failed;     /**< they did not */
-    int64_t sent_us[256];   /**< when the command of each sequence number went out */
-    uint8_t answered;       /**< sequence number of the newest command that was answered */
+    bool stopped;          /**< zero volts until arm */
+    uint32_t arming_ticks; /**< left for the drives to get ready */
+    bool arming_failed;    /**< they did not */
+    int64_t sent_us[256];  /**< when the command of each sequence number went out */
+    uint8_t answered;      /**< sequence number of the newest command that was answered */
     mct_clock clock;
     mct_can_counts counts;
     mct_can_report report;

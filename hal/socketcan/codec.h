@@ -21,6 +21,22 @@ const mct_can_message *mct_can_sort(const mct_can_protocol *protocol, uint8_t no
 void mct_can_begin(const mct_can_protocol *protocol, uint32_t code, uint8_t node, uint8_t length,
                    mct_can_frame *frame);
 
+/**
+ * Keeps how far a position has moved since the message before, and counts in `axis->alternations` the times that it
+ * went there and back at once. Two drives under one number do so, each with a position of its own. Nothing that moves
+ * does: over 1/64 turn, in two messages a millisecond apart, it would take 3e4 turns/s^2. What begins and ends within
+ * a turn may also be back by the other way round.
+ */
+void mct_can_note_change(mct_can_axis *axis, double turns);
+
+/** True when a position comes after so long a silence that its drive may have restarted meanwhile. */
+bool mct_can_was_silent(const mct_can_encoder *encoder, const mct_can_frame *frame);
+
+static inline double mct_can_magnitude(double value)
+{
+    return value < 0 ? -value : value;
+}
+
 static inline bool mct_can_finite(double value)
 {
     return value - value == 0;

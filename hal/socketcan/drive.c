@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "hal/socketcan/codec.h"
+
 enum { MOST_FRAMES = 512 /* taken in at once */ };
 
 static const double vesc_highest_duty = 0.95;
@@ -20,6 +22,11 @@ static bool is_vesc(const mct_can_device *device)
 static bool is_native(const mct_can_device *device)
 {
     return device->protocol == &mct_can_native;
+}
+
+static bool is_odrive(const mct_can_device *device)
+{
+    return device->protocol == &mct_can_odrive || device->protocol == &mct_can_odrive_0_5;
 }
 
 /* True while the scene's fault lasts. */
@@ -184,8 +191,8 @@ static bool hear(mct_can_drive *self, const mct_can_frame *frame)
         }
         device->protocol->obey(device, frame);
         heed(self, device);
-        const bool feeds = verdict == MCT_CAN_IS_COMMAND ||
-                           (verdict == MCT_CAN_IS_REQUEST && device->protocol == &mct_can_odrive);
+        const bool feeds =
+            verdict == MCT_CAN_IS_COMMAND || (verdict == MCT_CAN_IS_REQUEST && is_odrive(device));
         self->boards[i].fed = feeds ? self->tick : self->boards[i].fed;
         self->result.commands += verdict == MCT_CAN_IS_COMMAND;
         self->result.old_commands += verdict == MCT_CAN_IS_OLDER || verdict == MCT_CAN_IS_REPEATED;
@@ -235,12 +242,14 @@ static void settle(mct_can_device *device)
                                           : MCT_CAN_DRIVE_IDLE;
     if (device->state == MCT_CAN_DRIVE_READY) {
         device->restarted = false;
+        device->has_driven = true;
     }
 }
 
+/* A native drive has it from its host, the others from their configuration. */
 static double watchdog_of(const mct_can_device *device)
 {
-    return device->watchdog_ms > 0 ? 1e-3 * device->watchdog_ms : device->scene->can_watchdog;
+    return is_native(device) ? 1e-3 * device->watchdog_ms : device->scene->can_watchdog;
 }
 
 /* The motor's drive stops by itself when its commands cease. */
@@ -275,6 +284,8 @@ static void boot(mct_can_drive *self, int number)
         .restarted = true,
         .supply = self->axes.axes[0].motor.supply,
         .temperature = room_temperature,
+        .counts_per_turn =
+            mct_can_nearest(mct_can_magnitude(axis->encoders[0].counts_per_turn), 0, INT32_MAX),
     };
     board->booted = self->tick;
     board->fed = self->tick;
@@ -291,9 +302,9 @@ static void boot(mct_can_drive *self, int number)
 static uint32_t error_of(const mct_can_device *device)
 {
     const uint32_t other = 255, drv_fault = 0x20, motor_failed = 0x40;
-    return device->protocol != &mct_can_odrive                   ? other
-           : device->scene->can_firmware == MCT_CAN_FIRMWARE_0_6 ? drv_fault
-                                                                 : motor_failed;
+    return device->protocol == &mct_can_odrive       ? drv_fault
+           : device->protocol == &mct_can_odrive_0_5 ? motor_failed
+                                                     : other;
 }
 
 /* The first tick of a fault. */
@@ -517,7 +528,8 @@ static void measure(mct_can_drive *self, int number)
     const mct_can_axis *axis = &self->axes.axes[number];
     for (int j = 0; j < MCT_CAN_ENCODERS; j++) {
         const bool reversed = axis->encoders[j].counts_per_turn < 0;
-        device->counts[j] = wrapped(self, reversed ? -board->position[j] : board->position[j]);
+        const int64_t counts = reversed ? -board->position[j] : board->position[j];
+        device->counts[j] = is_native(device) ? wrapped(self, counts) : (int32_t)(uint32_t)(uint64_t)counts;
     }
     if (axis->encoders[0].used) {
         device->turns = (double)board->position[0] / axis->encoders[0].counts_per_turn;

@@ -13,7 +13,7 @@
  *
  * When nothing may drive the motor, a native drive's bridge puts zero volts on it (as hal/sim does); the
  * others let it run free: no current, the terminals follow the back-emf. After a reboot no bridge works
- * until the drive is up.
+ * until the drive is up. A native drive has no watchdog but the one that it is told.
  *
  * Faults of [can] begin and end at ticks of the mechanism, so nothing befalls what is held; one of no
  * duration lasts one tick. They befall the frames of all drives:
@@ -26,8 +26,8 @@
  *                   in order
  *   reorder         frames of each second tick come behind those of the next one
  *   drop_commands   volts, duty or torque that the host sends are not heard; requests and stops are
- *   nan             the encoder gives no valid counts: an ODrive sends NaN, a native drive says so, a VESC,
- *                   which has no words for it, does not send its position
+ *   nan             the encoder gives no valid counts: an ODrive sends NaN, a native drive says so; a VESC
+ *                   and an ODrive 0.5, which have no words for it, do not send their position
  *   reboot          at the first tick all drives go dark for 50 ms, or the duration if that is longer: then
  *                   idle, clocks and counters at zero, nothing remembered
  *   estop           one emergency stop at the first tick, until it is cleared; a native drive says so on the
@@ -101,11 +101,11 @@ typedef struct {
     /* private */
     mct_can_ring *ring; /**< that it serves, or NULL */
     bool was_held, calls_stop;
-    uint64_t tick;                                          /**< since it went on the bus */
-    mct_reading reading;                                    /**< of the sensors, at the present state */
+    uint64_t tick;                                       /**< since it went on the bus */
+    mct_reading reading;                                 /**< of the sensors, at the present state */
     double rates[MCT_MAX_LATENCY + 1][MCT_MAX_ENCODERS]; /**< as the sensors' queue [counts/s] */
     double rate[MCT_MAX_ENCODERS];                       /**< as last sensed [counts/s] */
-    uint64_t fault_begin, fault_end;                        /**< [ticks of the mechanism] */
+    uint64_t fault_begin, fault_end;                     /**< [ticks of the mechanism] */
     int late_first, late_count;
     mct_can_late_frame late[MCT_CAN_MAX_DELAYED]; /**< a queue, in the order in which they were sent */
 } mct_can_drive;

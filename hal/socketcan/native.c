@@ -9,6 +9,8 @@
  * Latches. Watchdog, emergency stop, errors and a restart of the drive hold the motor at zero volts until a
  * command of mode clear, which nobody but `arm` sends.
  *
+ * Watchdog. Each command says how long it holds; 0: until the next one.
+ *
  * A float target computes no double in each tick, but for a sign and one conversion of the settings.
  */
 #include <string.h>
@@ -162,7 +164,7 @@ static void fill_command(mct_can_axis *axis, int32_t millivolts, uint8_t mode, b
         .sequence = axis->sequence,
         .mode = mode,
         .enable = enable,
-        .timeout = (uint8_t)(timeout < SHORTEST_TIMEOUT ? SHORTEST_TIMEOUT : timeout),
+        .timeout = (uint8_t)(timeout < SHORTEST_TIMEOUT && wanted > 0 ? SHORTEST_TIMEOUT : timeout),
     };
     mct_can_begin(&mct_can_native, COMMAND, axis->node, 8, frame);
     mct_dbc_native_drive_cmd_pack(frame->data, &command, sizeof frame->data);
@@ -205,7 +207,8 @@ static mct_can_verdict obey_command(mct_can_device *device, const mct_can_frame 
         return MCT_CAN_IS_BAD_CHECKSUM;
     }
     const int8_t newer = (int8_t)(uint8_t)(command.sequence - device->sequence);
-    const bool in_order = !device->has_sequence || newer > 0;
+    /* To cease is obeyed in any order: after 128 commands that were lost a newer one looks older. */
+    const bool in_order = !device->has_sequence || newer > 0 || (newer != 0 && !command.enable);
     if (!in_order && !device->watchdog_expired && command.mode != MODE_CLEAR) {
         device->old_commands++;
         return newer == 0 ? MCT_CAN_IS_REPEATED : MCT_CAN_IS_OLDER;
@@ -213,7 +216,8 @@ static mct_can_verdict obey_command(mct_can_device *device, const mct_can_frame 
     const bool drives = command.enable && command.mode == MODE_VOLTAGE;
     device->sequence = command.sequence;
     device->has_sequence = true;
-    device->watchdog_ms = command.timeout < SHORTEST_TIMEOUT ? SHORTEST_TIMEOUT : command.timeout;
+    const bool is_short = command.timeout > 0 && command.timeout < SHORTEST_TIMEOUT;
+    device->watchdog_ms = is_short ? SHORTEST_TIMEOUT : command.timeout;
     device->wants_ready = command.enable && command.mode != MODE_IDLE;
     device->wants_clear |= command.mode == MODE_CLEAR;
     device->wish = MCT_CAN_WISH_VOLTS;

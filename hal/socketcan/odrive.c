@@ -6,12 +6,23 @@
  * armature is computed here, i = (V - emf)/R with the newest speed, torque = k_T i; the current limit is the
  * drive's. A disabled command asks for no torque: the motor runs free.
  *
- * Position. A float's steps are coarse after many turns, so between its steps the speed is summed up, and the sum
- * is held within the step that the float names. Nothing drifts: the float has the last word.
+ * 0.5. Its estimates are 0 until the axis has been in closed loop for the first time: they are those of the
+ * controller, which has no source before (get_encoder_estimates_callback). So a drive that is read only and never
+ * armed would seem to stand still. Its position comes from the encoder's own counter instead, which goes on in any
+ * state: counts are the scene's (of the encoder's ratio the sign alone is used). Its estimates are asked for where
+ * their speed is needed, in mode torque; a count without a speed of the same time is no feedback then. 0.6 and 0.5
+ * are two protocols with one code.
+ *
+ * Position, 0.6. A float's steps are coarse after many turns, so between its steps the speed is summed up, and
+ * the sum is held within the step that the float names. Nothing drifts: the float has the last word.
  *
  * Restart. The drive does not tell. It looks like one when its axis is no longer in closed loop though nothing
  * was wrong (a stop from here leaves the error ESTOP_REQUESTED), or when its position moves further than its
- * speed allows.
+ * speed allows. A counter tells no speed: that of the messages before stands for it, and after 0.25 s without one
+ * nothing can be judged, which is taken for a restart.
+ *
+ * Repetition. The same bytes again while the drive tells a speed. A counter alone cannot be judged: what has just
+ * been stopped shows the same bytes for ever.
  *
  * Stop. Torque 0 first, as the quickest way to no current; then Estop, which the drive latches whatever torque
  * comes after; IDLE in case that an old firmware takes the emergency stop late. `arm` clears it.
@@ -27,6 +38,7 @@ enum {
     ESTOP = 0x02,
     SET_AXIS_STATE = 0x07,
     ESTIMATES = 0x09,
+    COUNT = 0x0A,
     SET_CONTROLLER_MODE = 0x0B,
     SET_INPUT_TORQUE = 0x0E,
     BUS = 0x17,
@@ -43,37 +55,47 @@ static const error_bits bits_0_6 = {0x01000000, 0x02000000, 0x2 /* SYSTEM_LEVEL 
 static const error_bits bits_0_5 = {0x800, 0x4000, 0x40 /* MOTOR_FAILED */};
 enum { MOTOR_FAILED_0_5 = 0x40, ENCODER_FAILED_0_5 = 0x100, CONTROLLER_FAILED_0_5 = 0x200 };
 
+#define AXES         (MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER)
 #define NODE_SHIFT   5
 #define SURELY_MOVED 2     /* counts */
 #define JUMP         0.05  /* turns that nothing moves without a speed */
 #define LATE         0.005 /* [s] that a time stamp may be wrong by */
+#define HARDEST      100.0 /* [turns/s^2] that a mechanism may do while messages are lost */
+#define NEAREST      0.001 /* [s] from message to message, as the drive sends them */
 
+/* One table: what 0.6 alone has, what both have, what 0.5 alone has. */
+enum { ONLY_0_6 = 2, ONLY_0_5 = 3 };
 static const mct_can_message messages[] = {
+    {"Get_Encoder_Estimates", ESTIMATES, 8, true, AXES, 0, 0},
+    {"Clear_Errors", CLEAR_ERRORS, 1, false, AXES, -1, -1},
+
     {"Set_Input_Torque", SET_INPUT_TORQUE, 8, false, MCT_CAN_OF_MOTOR, 0, 0},
     {"Set_Axis_State", SET_AXIS_STATE, 8, false, MCT_CAN_OF_MOTOR, -1, -1},
     {"Set_Controller_Mode", SET_CONTROLLER_MODE, 8, false, MCT_CAN_OF_MOTOR, -1, -1},
-    {"Clear_Errors", CLEAR_ERRORS, 1, false, MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER, -1,
-     -1}, /* 0 bytes in 0.5 */
     {"Estop", ESTOP, 0, false, MCT_CAN_OF_MOTOR, -1, -1},
-    {"Get_Encoder_Estimates", ESTIMATES, 8, true, MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER, 0, 0},
-    {"Heartbeat", HEARTBEAT, 8, true, MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER, 0.1, 0.5},
+    {"Heartbeat", HEARTBEAT, 8, true, AXES, 0.1, 0.5},
     {"Get_Bus_Voltage_Current", BUS, 8, true, 0, 0.1, 0.5},
-    {"Estop", ESTOP, 0, true, MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER, -1, -1},
+    {"Estop", ESTOP, 0, true, AXES, -1, -1},
+
+    {"Get_Encoder_Count", COUNT, 8, true, AXES, 0, 0},
+    {"Get_Encoder_Estimates", ESTIMATES, 8, true, MCT_CAN_OF_TORQUE, 0, 0},
+    {"Clear_Errors", CLEAR_ERRORS, 0, false, AXES, -1, -1},
 };
+enum { MESSAGES = sizeof messages / sizeof messages[0] };
 
 static uint32_t identifier(uint32_t code, uint8_t node)
 {
     return (uint32_t)node << NODE_SHIFT | code;
 }
 
-static double magnitude(double value)
+static bool is_0_5(const mct_can_protocol *protocol)
 {
-    return value < 0 ? -value : value;
+    return protocol == &mct_can_odrive_0_5;
 }
 
-static const error_bits *bits_of(const mct_scene *scene)
+static const error_bits *bits_of(const mct_can_protocol *protocol)
 {
-    return scene->can_firmware == MCT_CAN_FIRMWARE_0_5 ? &bits_0_5 : &bits_0_6;
+    return is_0_5(protocol) ? &bits_0_5 : &bits_0_6;
 }
 
 /* --- the host's end --- */
@@ -100,9 +122,33 @@ static void note_restart(mct_can_axis *axis)
 
 static bool has_position(const mct_can_encoder *encoder)
 {
-    struct mct_dbc_odrive_get_encoder_estimates_t last;
-    mct_dbc_odrive_get_encoder_estimates_unpack(&last, encoder->last, sizeof encoder->last);
-    return encoder->updates > 0 && mct_can_finite((double)last.pos_estimate);
+    bool is_one = false;
+    for (size_t i = 0; i < sizeof encoder->last; i++) {
+        is_one |= encoder->last[i] != 0xFF;
+    }
+    return encoder->updates > 0 && is_one;
+}
+
+/* Since the last feedback [s]. */
+static double seconds_since(const mct_can_encoder *encoder, const mct_can_frame *frame)
+{
+    const int64_t us = frame->time_us - encoder->time_us;
+    return us > 0 ? (double)us * 1e-6 : 0;
+}
+
+/* True for the last feedback once more, though at this speed it must have moved: `moved` turns, of `step`. */
+static bool is_repeated(const mct_can_encoder *encoder, const mct_can_frame *frame, double moved, double step)
+{
+    return memcmp(encoder->last, frame->data, sizeof encoder->last) == 0 && moved > step &&
+           moved * mct_can_magnitude(encoder->counts_per_turn) > SURELY_MOVED;
+}
+
+static mct_can_verdict note_feedback(mct_can_encoder *encoder, const mct_can_frame *frame)
+{
+    encoder->updates++;
+    encoder->time_us = frame->time_us;
+    memcpy(encoder->last, frame->data, sizeof encoder->last);
+    return encoder->used ? MCT_CAN_IS_FEEDBACK : MCT_CAN_IS_STATE;
 }
 
 static mct_can_verdict hear_estimates(mct_can_axis *axis, const mct_can_frame *frame)
@@ -118,16 +164,14 @@ static mct_can_verdict hear_estimates(mct_can_axis *axis, const mct_can_frame *f
     const double step = spacing(estimates.pos_estimate);
     double refined = turns;
     if (has_position(encoder)) {
-        const int64_t us = frame->time_us - encoder->time_us;
-        const double seconds = us > 0 ? (double)us * 1e-6 : 0;
-        const double moved = magnitude(rate) * seconds;
-        const double before = magnitude(axis->rate);
-        const double fastest = before > magnitude(rate) ? before : magnitude(rate);
-        if (memcmp(encoder->last, frame->data, sizeof encoder->last) == 0 && moved > step &&
-            moved * magnitude(encoder->counts_per_turn) > SURELY_MOVED) {
+        const double seconds = seconds_since(encoder, frame);
+        const double moved = mct_can_magnitude(rate) * seconds;
+        const double before = mct_can_magnitude(axis->rate);
+        const double fastest = before > mct_can_magnitude(rate) ? before : mct_can_magnitude(rate);
+        if (is_repeated(encoder, frame, moved, step)) {
             return MCT_CAN_IS_REPEATED;
         }
-        if (magnitude(turns - encoder->turns) > JUMP + step + fastest * (seconds + LATE)) {
+        if (mct_can_magnitude(turns - encoder->turns) > JUMP + step + fastest * (seconds + LATE)) {
             note_restart(axis);
         } else {
             const double predicted = encoder->turns + 0.5 * (axis->rate + rate) * seconds;
@@ -136,20 +180,78 @@ static mct_can_verdict hear_estimates(mct_can_axis *axis, const mct_can_frame *f
             refined = predicted < low ? low : predicted > high ? high : predicted;
         }
     }
+    if (encoder->updates > 0) {
+        mct_can_note_change(axis, refined - encoder->turns);
+    }
     axis->rate = rate;
     encoder->turns = refined;
     /* The nearest one: a whole count that a float has rounded down is that count still. */
     encoder->counts = mct_can_counter(refined * encoder->counts_per_turn + 0.5);
-    encoder->updates++;
-    encoder->time_us = frame->time_us;
-    memcpy(encoder->last, frame->data, sizeof encoder->last);
-    return encoder->used ? MCT_CAN_IS_FEEDBACK : MCT_CAN_IS_STATE;
+    return note_feedback(encoder, frame);
+}
+
+/* 0.5: only what the counter does not tell. */
+static mct_can_verdict hear_speed(mct_can_axis *axis, const mct_can_frame *frame)
+{
+    struct mct_dbc_odrive_0_5_get_encoder_estimates_t estimates;
+    mct_dbc_odrive_0_5_get_encoder_estimates_unpack(&estimates, frame->data, frame->length);
+    if (!mct_can_finite((double)estimates.pos_estimate) || !mct_can_finite((double)estimates.vel_estimate)) {
+        return MCT_CAN_IS_NOT_FINITE;
+    }
+    axis->rate = (double)estimates.vel_estimate;
+    axis->rate_us = frame->time_us;
+    return MCT_CAN_IS_STATE;
+}
+
+/* True when a speed that is needed has not come for some ticks. */
+static bool lacks_speed(const mct_can_axis *axis, const mct_can_frame *frame)
+{
+    const double age = (double)(frame->time_us - axis->rate_us) * 1e-6;
+    return (axis->roles & MCT_CAN_OF_TORQUE) && age > 3 * axis->scene->dt + LATE;
+}
+
+/* Turns from the last count to this one, which may be beyond the counter's end. */
+static double change_of(const mct_can_encoder *encoder, int32_t counts)
+{
+    struct mct_dbc_odrive_0_5_get_encoder_count_t before;
+    mct_dbc_odrive_0_5_get_encoder_count_unpack(&before, encoder->last, sizeof encoder->last);
+    const int32_t change = (int32_t)((uint32_t)counts - (uint32_t)before.shadow_count);
+    return change / mct_can_magnitude(encoder->counts_per_turn);
+}
+
+static mct_can_verdict hear_count(mct_can_axis *axis, const mct_can_frame *frame)
+{
+    mct_can_encoder *encoder = &axis->encoders[0];
+    struct mct_dbc_odrive_0_5_get_encoder_count_t count;
+    mct_dbc_odrive_0_5_get_encoder_count_unpack(&count, frame->data, frame->length);
+    if (lacks_speed(axis, frame)) {
+        return MCT_CAN_IS_STATE;
+    }
+    if (has_position(encoder)) {
+        const double seconds = seconds_since(encoder, frame);
+        const double change = change_of(encoder, count.shadow_count);
+        const double size = mct_can_magnitude(change);
+        const double speed = size / (seconds > NEAREST ? seconds : NEAREST);
+        const double longest = seconds + LATE;
+        const double allowed = JUMP + encoder->fastest * longest + 0.5 * HARDEST * longest * longest;
+        if (is_repeated(encoder, frame, mct_can_magnitude(axis->rate) * seconds, 0)) {
+            return MCT_CAN_IS_REPEATED;
+        }
+        mct_can_note_change(axis, change);
+        if (size > allowed || mct_can_was_silent(encoder, frame)) {
+            note_restart(axis);
+        }
+        encoder->fastest = speed > 0.5 * encoder->fastest ? speed : 0.5 * encoder->fastest;
+    }
+    const uint32_t counts = (uint32_t)count.shadow_count;
+    encoder->counts = (int32_t)(encoder->counts_per_turn < 0 ? 0 - counts : counts);
+    return note_feedback(encoder, frame);
 }
 
 /* Error and state of either firmware's heartbeat; flags of 0.5 become the error bits of the same meaning. */
-static uint32_t unpack_heartbeat(const mct_scene *scene, const mct_can_frame *frame, uint8_t *state)
+static uint32_t unpack_heartbeat(const mct_can_protocol *protocol, const mct_can_frame *frame, uint8_t *state)
 {
-    if (scene->can_firmware == MCT_CAN_FIRMWARE_0_5) {
+    if (is_0_5(protocol)) {
         struct mct_dbc_odrive_0_5_heartbeat_t beat;
         mct_dbc_odrive_0_5_heartbeat_unpack(&beat, frame->data, frame->length);
         *state = beat.axis_state;
@@ -165,9 +267,9 @@ static uint32_t unpack_heartbeat(const mct_scene *scene, const mct_can_frame *fr
 
 static mct_can_verdict hear_heartbeat(mct_can_axis *axis, const mct_can_frame *frame)
 {
-    const error_bits *bits = bits_of(axis->scene);
+    const error_bits *bits = bits_of(axis->protocol);
     uint8_t state;
-    const uint32_t error = unpack_heartbeat(axis->scene, frame, &state);
+    const uint32_t error = unpack_heartbeat(axis->protocol, frame, &state);
     const bool was_driving = axis->axis_state == STATE_CLOSED_LOOP;
     const bool is_driving = state == STATE_CLOSED_LOOP;
     if (was_driving && !is_driving && (error == 0 || state == STATE_UNDEFINED)) {
@@ -199,7 +301,7 @@ static mct_can_verdict hear_bus(mct_can_axis *axis, const mct_can_frame *frame)
 static mct_can_verdict hear(mct_can_axis *axis, const mct_can_frame *frame)
 {
     mct_can_verdict verdict;
-    const mct_can_message *message = mct_can_sort(&mct_can_odrive, axis->node, true, frame, &verdict);
+    const mct_can_message *message = mct_can_sort(axis->protocol, axis->node, true, frame, &verdict);
     if (message == NULL) {
         return verdict;
     }
@@ -210,8 +312,10 @@ static mct_can_verdict hear(mct_can_axis *axis, const mct_can_frame *frame)
         return MCT_CAN_IS_BAD_LENGTH;
     }
     switch (message->code) {
+    case COUNT:
+        return hear_count(axis, frame);
     case ESTIMATES:
-        return hear_estimates(axis, frame);
+        return is_0_5(axis->protocol) ? hear_speed(axis, frame) : hear_estimates(axis, frame);
     case HEARTBEAT:
         return hear_heartbeat(axis, frame);
     default:
@@ -222,31 +326,35 @@ static mct_can_verdict hear(mct_can_axis *axis, const mct_can_frame *frame)
 static void fill_torque(const mct_can_axis *axis, float torque, mct_can_frame *frame)
 {
     const struct mct_dbc_odrive_set_input_torque_t input = {.input_torque = torque};
-    mct_can_begin(&mct_can_odrive, SET_INPUT_TORQUE, axis->node, 8, frame);
+    mct_can_begin(axis->protocol, SET_INPUT_TORQUE, axis->node, 8, frame);
     mct_dbc_odrive_set_input_torque_pack(frame->data, &input, sizeof frame->data);
 }
 
 static void fill_state(const mct_can_axis *axis, uint32_t state, mct_can_frame *frame)
 {
     const struct mct_dbc_odrive_set_axis_state_t request = {.axis_requested_state = state};
-    mct_can_begin(&mct_can_odrive, SET_AXIS_STATE, axis->node, 8, frame);
+    mct_can_begin(axis->protocol, SET_AXIS_STATE, axis->node, 8, frame);
     mct_dbc_odrive_set_axis_state_pack(frame->data, &request, sizeof frame->data);
 }
 
 static void fill_clear(const mct_can_axis *axis, mct_can_frame *frame)
 {
-    const uint8_t length = axis->scene->can_firmware == MCT_CAN_FIRMWARE_0_5 ? 0 : 1;
-    mct_can_begin(&mct_can_odrive, CLEAR_ERRORS, axis->node, length, frame);
+    const uint8_t length = is_0_5(axis->protocol) ? 0 : 1;
+    mct_can_begin(axis->protocol, CLEAR_ERRORS, axis->node, length, frame);
 }
 
 /* The armature, which the drive does not have: all in the drive's own sense of rotation. */
+static double within(double value, double bound)
+{
+    return value > bound ? bound : value < -bound ? -bound : value;
+}
+
 static double torque_of(const mct_can_axis *axis, double volts)
 {
     const mct_can_motor *motor = &axis->motor;
-    const double within = volts > motor->supply    ? motor->supply
-                          : volts < -motor->supply ? -motor->supply
-                                                   : volts;
-    const double amperes = (within - motor->emf_per_turn * axis->rate) / motor->resistance;
+    /* A motor driven by its supply cannot turn faster than twice its own speed: who says so is not believed. */
+    const double emf = within(motor->emf_per_turn * axis->rate, 2 * motor->supply);
+    const double amperes = (within(volts, motor->supply) - emf) / motor->resistance;
     return motor->resistance > 0 ? motor->torque_per_ampere * amperes : 0;
 }
 
@@ -269,7 +377,7 @@ static int arm(mct_can_axis *axis, mct_can_frame frames[MCT_CAN_MAX_BURST])
     }
     fill_torque(axis, 0, &frames[0]);
     fill_clear(axis, &frames[1]);
-    mct_can_begin(&mct_can_odrive, SET_CONTROLLER_MODE, axis->node, 8, &frames[2]);
+    mct_can_begin(axis->protocol, SET_CONTROLLER_MODE, axis->node, 8, &frames[2]);
     mct_dbc_odrive_set_controller_mode_pack(frames[2].data, &mode, sizeof frames[2].data);
     fill_state(axis, STATE_CLOSED_LOOP, &frames[3]);
     return 4;
@@ -281,7 +389,7 @@ static int stop(mct_can_axis *axis, mct_can_frame frames[MCT_CAN_MAX_BURST])
         return 0;
     }
     fill_torque(axis, 0, &frames[0]);
-    mct_can_begin(&mct_can_odrive, ESTOP, axis->node, 0, &frames[1]);
+    mct_can_begin(axis->protocol, ESTOP, axis->node, 0, &frames[1]);
     fill_state(axis, STATE_IDLE, &frames[2]);
     return 3;
 }
@@ -360,7 +468,7 @@ static mct_can_verdict obey(mct_can_device *device, const mct_can_frame *frame)
 
 static void report_heartbeat(const mct_can_device *device, mct_can_frame *frame)
 {
-    const error_bits *bits = bits_of(device->scene);
+    const error_bits *bits = bits_of(device->protocol);
     const bool other = device->state == MCT_CAN_DRIVE_FAULTY && device->error == 0 &&
                        !device->watchdog_expired && !device->estopped;
     const uint32_t error = device->error | (device->watchdog_expired ? bits->watchdog : 0) |
@@ -368,7 +476,7 @@ static void report_heartbeat(const mct_can_device *device, mct_can_frame *frame)
     const uint8_t state = device->state == MCT_CAN_DRIVE_UNKNOWN ? STATE_UNDEFINED
                           : device->state == MCT_CAN_DRIVE_READY ? STATE_CLOSED_LOOP
                                                                  : STATE_IDLE;
-    if (device->scene->can_firmware == MCT_CAN_FIRMWARE_0_5) {
+    if (is_0_5(device->protocol)) {
         const struct mct_dbc_odrive_0_5_heartbeat_t beat = {
             .axis_error = error,
             .axis_state = state,
@@ -388,16 +496,30 @@ static void report_heartbeat(const mct_can_device *device, mct_can_frame *frame)
     }
 }
 
+/* What has no position: 0.6 says NaN, as of an encoder that has lost it, and 0.5 says 0. */
 static void report_estimates(const mct_can_device *device, mct_can_frame *frame)
 {
-    const uint32_t all_ones = UINT32_MAX;
+    const uint32_t bits = is_0_5(device->protocol) ? 0 : UINT32_MAX; /* all ones: a NaN */
+    const bool is_known = !device->encoder_invalid && (device->has_driven || !is_0_5(device->protocol));
     float nothing;
-    memcpy(&nothing, &all_ones, sizeof nothing); /* a NaN, as of an encoder that has lost its position */
+    memcpy(&nothing, &bits, sizeof nothing);
     const struct mct_dbc_odrive_get_encoder_estimates_t estimates = {
-        .pos_estimate = device->encoder_invalid ? nothing : mct_can_float(device->turns),
-        .vel_estimate = device->encoder_invalid ? nothing : mct_can_float(device->rate),
+        .pos_estimate = is_known ? mct_can_float(device->turns) : nothing,
+        .vel_estimate = is_known ? mct_can_float(device->rate) : nothing,
     };
     mct_dbc_odrive_get_encoder_estimates_pack(frame->data, &estimates, sizeof frame->data);
+}
+
+static bool report_count(const mct_can_device *device, mct_can_frame *frame)
+{
+    const int32_t turn = device->counts_per_turn;
+    const int32_t within = turn > 0 ? device->counts[0] % turn : 0;
+    const struct mct_dbc_odrive_0_5_get_encoder_count_t count = {
+        .shadow_count = device->counts[0],
+        .count_in_cpr = within < 0 ? within + turn : within,
+    };
+    mct_dbc_odrive_0_5_get_encoder_count_pack(frame->data, &count, sizeof frame->data);
+    return !device->encoder_invalid;
 }
 
 static void report_bus(const mct_can_device *device, mct_can_frame *frame)
@@ -410,13 +532,17 @@ static void report_bus(const mct_can_device *device, mct_can_frame *frame)
     mct_dbc_odrive_get_bus_voltage_current_pack(frame->data, &bus, sizeof frame->data);
 }
 
-static bool report(mct_can_device *device, int message, mct_can_frame *frame)
+static bool report(mct_can_device *device, int number, mct_can_frame *frame)
 {
-    if (message < 0 || message >= mct_can_odrive.message_count || !messages[message].from_drive) {
+    const mct_can_protocol *protocol = device->protocol;
+    if (number < 0 || number >= protocol->message_count || !protocol->messages[number].from_drive) {
         return false;
     }
-    mct_can_begin(&mct_can_odrive, messages[message].code, device->node, messages[message].length, frame);
-    switch (messages[message].code) {
+    const mct_can_message *message = &protocol->messages[number];
+    mct_can_begin(protocol, message->code, device->node, message->length, frame);
+    switch (message->code) {
+    case COUNT:
+        return report_count(device, frame);
     case ESTIMATES:
         report_estimates(device, frame);
         return true;
@@ -431,20 +557,16 @@ static bool report(mct_can_device *device, int message, mct_can_frame *frame)
     }
 }
 
-const mct_can_protocol mct_can_odrive = {
-    .name = "odrive",
-    .doc = "ODrive CANSimple: torque or q-axis volts in, turns out",
-    .extended = false,
-    .has_spare = false,
-    .has_echo = false,
-    .has_state = true,
-    .message_count = (int)(sizeof messages / sizeof messages[0]),
-    .messages = messages,
-    .identifier = identifier,
-    .hear = hear,
-    .command = command,
-    .arm = arm,
-    .stop = stop,
-    .obey = obey,
-    .report = report,
-};
+#define PROTOCOL(documentation, first, count)                                                               \
+    {                                                                                                       \
+        .name = "odrive", .doc = documentation, .extended = false, .has_spare = false, .has_echo = false,   \
+        .has_state = true, .message_count = (count), .messages = messages + (first),                        \
+        .identifier = identifier, .hear = hear, .command = command, .arm = arm, .stop = stop, .obey = obey, \
+        .report = report,                                                                                   \
+    }
+
+const mct_can_protocol mct_can_odrive =
+    PROTOCOL("ODrive CANSimple: torque or q-axis volts in, turns out", 0, MESSAGES - ONLY_0_5);
+
+const mct_can_protocol mct_can_odrive_0_5 =
+    PROTOCOL("ODrive CANSimple 0.5: torque or q-axis volts in, counts out", ONLY_0_6, MESSAGES - ONLY_0_6);

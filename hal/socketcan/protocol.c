@@ -10,6 +10,12 @@ const mct_can_protocol *const mct_can_protocols[MCT_CAN_PROTOCOL_COUNT] = {
     [MCT_CAN_ODRIVE] = &mct_can_odrive,
 };
 
+const mct_can_protocol *mct_can_protocol_of(const mct_scene *scene)
+{
+    const bool is_0_5 = scene->can_protocol == MCT_CAN_ODRIVE && scene->can_firmware == MCT_CAN_FIRMWARE_0_5;
+    return is_0_5 ? &mct_can_odrive_0_5 : mct_can_protocols[scene->can_protocol];
+}
+
 /* Start, identifier, control, checksum of 15 bits, acknowledgement, end of 7 bits, gap of 3. */
 int mct_can_nominal_bits(bool extended, int length)
 {
@@ -52,4 +58,21 @@ void mct_can_begin(const mct_can_protocol *protocol, uint32_t code, uint8_t node
     frame->id = protocol->identifier(code, node);
     frame->extended = protocol->extended;
     frame->length = length;
+}
+
+void mct_can_note_change(mct_can_axis *axis, double turns)
+{
+    const double least = 1.0 / 64;
+    const double apart = mct_can_magnitude(axis->change + turns);
+    const bool is_back = apart < least || (apart > 1 - least && apart < 1 + least);
+    if (mct_can_magnitude(axis->change) > least && mct_can_magnitude(turns) > least && is_back) {
+        axis->alternations++;
+    }
+    axis->change = turns;
+}
+
+bool mct_can_was_silent(const mct_can_encoder *encoder, const mct_can_frame *frame)
+{
+    const int64_t longest_us = 250000;
+    return encoder->updates > 0 && frame->time_us - encoder->time_us > longest_us;
 }

@@ -24,7 +24,8 @@
 enum {
     MCT_CAN_OF_MOTOR = 1 << 0,   /**< the drive that powers the motor */
     MCT_CAN_OF_ENCODER = 1 << 1, /**< a drive whose own encoder is read, with or without a motor */
-    MCT_CAN_OF_SPARE = 1 << 2    /**< a drive whose second encoder is read */
+    MCT_CAN_OF_SPARE = 1 << 2,   /**< a drive whose second encoder is read */
+    MCT_CAN_OF_TORQUE = 1 << 3   /**< the drive that powers the motor, where it is told a torque */
 };
 
 /** One kind of frame. */
@@ -68,6 +69,7 @@ typedef struct {
     uint16_t capture_us; /**< native: the drive's own clock at that feedback */
     int64_t steps;       /**< vesc: unwrapped position [0.02 deg] */
     double turns;        /**< odrive: position, finer than its float [turns] */
+    double fastest;      /**< odrive 0.5: highest speed of late, by its counts [turns/s] */
     uint8_t last[8];     /**< payload of the last feedback, to tell one that is repeated */
 } mct_can_encoder;
 
@@ -90,6 +92,9 @@ typedef struct {
     uint8_t axis_state;        /**< odrive: of its newest heartbeat; kept while it is asked to get ready */
     double bus_voltage;        /**< as the drive measures it [V]; 0: not heard */
     double rate;               /**< of the drive's encoder, as it says [turns/s]; 0: not heard */
+    int64_t rate_us;           /**< odrive: when that came */
+    double change;             /**< vesc, odrive: of the position, from message to message [turns] */
+    uint32_t alternations;     /**< vesc, odrive: there and back, as two drives with one number answer */
     uint16_t serial;           /**< native: of the drive; 0: not heard */
     uint32_t serial_changes;   /**< native: another serial number under the same node */
     int32_t sent_duty;         /**< vesc: of the last command [1e-5] */
@@ -141,7 +146,7 @@ typedef struct {
     double value;          /**< in the wish's unit; always finite */
     uint8_t sequence;      /**< native: of the last command accepted */
     bool has_sequence;     /**< native: there was one */
-    uint32_t watchdog_ms;  /**< asked for by commands; 0: as configured */
+    uint32_t watchdog_ms;  /**< native: asked for by the last command accepted; 0: none */
     uint32_t commands;     /**< accepted */
     uint32_t old_commands; /**< refused because their sequence number was not newer */
 
@@ -149,7 +154,9 @@ typedef struct {
     mct_can_drive_state state;
     uint32_t error;
     bool watchdog_expired, estopped, restarted, encoder_invalid;
-    int32_t counts[MCT_CAN_ENCODERS]; /**< native */
+    bool has_driven;                  /**< odrive 0.5: it has been ready since it started */
+    int32_t counts[MCT_CAN_ENCODERS]; /**< native, odrive 0.5 */
+    int32_t counts_per_turn;          /**< odrive 0.5: of its own encoder; 0: not known */
     double turns, rate;               /**< of its own encoder [turns], [turns/s] */
     double volts, amperes, supply;    /**< at the motor, at the motor, of the supply */
     double temperature;               /**< [degree Celsius] */
@@ -192,12 +199,16 @@ typedef struct mct_can_protocol {
 } mct_can_protocol;
 
 #define MCT_CAN_PROTOCOL_COUNT 3
-/** In the order of the choices of can.protocol. */
+/** In the order of the choices of can.protocol, each in its newest form: for its name. */
 extern const mct_can_protocol *const mct_can_protocols[MCT_CAN_PROTOCOL_COUNT];
+
+/** What the drives of a scene speak, by can.protocol and can.firmware. */
+const mct_can_protocol *mct_can_protocol_of(const mct_scene *scene);
 
 extern const mct_can_protocol mct_can_native;
 extern const mct_can_protocol mct_can_vesc;
-extern const mct_can_protocol mct_can_odrive;
+extern const mct_can_protocol mct_can_odrive;     /**< firmware 0.6 */
+extern const mct_can_protocol mct_can_odrive_0_5; /**< the same but for what its positions come from */
 
 /** Longest and nominal length of a frame on the wire, stuffing and the gap behind it included [bits]. */
 int mct_can_nominal_bits(bool extended, int length);

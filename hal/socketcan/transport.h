@@ -37,7 +37,8 @@ const char *mct_can_link_text(mct_can_link_state state);
 
 typedef struct {
     const char *name;
-    bool simulated; /**< its clock moves only while somebody waits, and a tick brings all that it will bring */
+    bool
+        simulated; /**< its clock moves only while somebody waits, and a tick brings all that it will bring */
     /**
      * Gets ready to carry frames.
      * @param filters  what shall be received; nothing else is. count 0: everything

@@ -8,9 +8,12 @@
  * Differences from a voltage source: the drive limits the duty (0.95 by default) and ramps it; a duty of zero shorts
  * the motor's terminals, a timeout releases them.
  *
- * The drive never says whether it is ready nor that it has restarted. What can be judged is what it does: one that
+ * The drive never says whether it is ready. What can be judged is what it does: one that
  * reports no duty while it is told a large one for some time does not obey (MCT_CAN_DRIVE_IDLE), and one that
  * reports a speed while its position stands still has a blind encoder, whose messages then count for nothing.
+ *
+ * Restart. The drive counts anew then, and says nothing of it. So a position that comes again after 0.25 s without
+ * one is taken for that of another start. A drive that is up again sooner goes unnoticed.
  *
  * A status message holds no number that is not finite. The status messages that are not each tick's have one rate
  * in the drive (its second), so one period here.
@@ -46,11 +49,6 @@ static uint32_t identifier(uint32_t code, uint8_t node)
     return code << 8 | node;
 }
 
-static double magnitude(double value)
-{
-    return value < 0 ? -value : value;
-}
-
 /* Volts of a full duty. */
 static double full_voltage(const mct_scene *scene, double supply)
 {
@@ -71,6 +69,10 @@ static mct_can_verdict hear_position(mct_can_axis *axis, const mct_can_frame *fr
     if (axis->is_frozen && change == 0) {
         return MCT_CAN_IS_REPEATED;
     }
+    if (encoder->updates > 0) {
+        mct_can_note_change(axis, (double)change / STEPS_PER_TURN);
+    }
+    axis->restarts += mct_can_was_silent(encoder, frame);
     axis->is_frozen = false;
     axis->has_moved |= change != 0;
     encoder->steps += change;
@@ -85,8 +87,8 @@ static mct_can_verdict hear_status(mct_can_axis *axis, const mct_can_frame *fram
     struct mct_dbc_vesc_status_t status;
     mct_dbc_vesc_status_unpack(&status, frame->data, frame->length);
     const double rate = status.electrical_speed / (60.0 * axis->scene->can_pole_pairs);
-    axis->is_frozen = !axis->has_moved && magnitude(rate) > SURELY_MOVES &&
-                      magnitude(axis->rate) > SURELY_MOVES && (rate > 0) == (axis->rate > 0);
+    axis->is_frozen = !axis->has_moved && mct_can_magnitude(rate) > SURELY_MOVES &&
+                      mct_can_magnitude(axis->rate) > SURELY_MOVES && (rate > 0) == (axis->rate > 0);
     axis->has_moved = false;
     axis->rate = rate;
     /* One that talks and does not disobey is ready: there is nothing to ask it. */
@@ -206,8 +208,8 @@ static mct_can_verdict obey(mct_can_device *device, const mct_can_frame *frame)
         break;
     default: /* a brake: against the motion of this moment */
         follow(device, MCT_CAN_WISH_CURRENT,
-               device->rate > 0   ? -magnitude(amperes)
-               : device->rate < 0 ? magnitude(amperes)
+               device->rate > 0   ? -mct_can_magnitude(amperes)
+               : device->rate < 0 ? mct_can_magnitude(amperes)
                                   : 0);
         break;
     }
@@ -227,7 +229,7 @@ static double duty_of(const mct_can_device *device)
 
 static bool report_position(const mct_can_device *device, mct_can_frame *frame)
 {
-    const bool known = magnitude(device->turns) < 1e15;
+    const bool known = mct_can_magnitude(device->turns) < 1e15;
     const double whole = known ? (double)(int64_t)device->turns : 0;
     const double within = known ? device->turns - whole : 0;
     const double positive = within < 0 ? within + 1 : within; /* may round to 1 */

@@ -40,7 +40,7 @@ typedef struct mct_controller {
     mct_real (*swing_up)(struct mct_controller *self); /**< law of the system [V] */
     uint32_t effects;
     mct_mode mode;
-    mct_real limit;                             /**< largest input [V] */
+    mct_real limit;                          /**< largest input [V] */
     mct_real gains[2 * MCT_MAX_ENCODERS];    /**< K */
     mct_real travelled[MCT_MAX_ENCODERS];    /**< of a cyclic coordinate since balancing began */
     mct_real unstable[2 * MCT_MAX_ENCODERS]; /**< w, scaled: |w'x| < 1 is what can be caught */

@@ -18,7 +18,7 @@ typedef struct {
     mct_real flow[MCT_EXPO_STATES][MCT_EXPO_RATES]; /**< e^(A h) - 1, the columns of rates and current */
     mct_real input[MCT_EXPO_STATES];                /**< response to a unit input held over the step */
     mct_real force[3][MCT_EXPO_STATES];             /**< response to g = 1, s/h, (s/h)^2 along the step */
-    mct_real half_flow[MCT_EXPO_RATES];            /**< the same over half a step, row of x_0 only */
+    mct_real half_flow[MCT_EXPO_RATES];             /**< the same over half a step, row of x_0 only */
     mct_real half_input;
     mct_real half_force;
 } mct_expo;

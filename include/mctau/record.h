@@ -17,8 +17,8 @@ typedef struct {
     mct_state plant; /**< simulated state at the tick; zero on real hardware */
     mct_reading reading;
     mct_real estimate[2 * MCT_MAX_ENCODERS]; /**< zero in open loop */
-    mct_real wanted;                            /**< input asked for [V] */
-    mct_real applied;                           /**< input let through [V] */
+    mct_real wanted;                         /**< input asked for [V] */
+    mct_real applied;                        /**< input let through [V] */
     mct_mode mode;
     uint32_t faults;  /**< latched, bit (1 << mct_fault) */
     bool rearmed;     /**< faults were cleared before this tick */

@@ -96,10 +96,10 @@ typedef struct mct_scene {
     double can_startup;   /**< [s] */
     double can_duty_ramp; /**< [1/s] */
     int32_t can_lockstep;
-    int32_t can_fault; /**< MCT_CAN_FAULT_... */
-    double can_fault_time, can_fault_duration;        /**< [s] */
-    int32_t can_encoder_node[MCT_MAX_ENCODERS];    /**< drive that reads it; -1: see the key's doc */
-    double can_encoder_ratio[MCT_MAX_ENCODERS];    /**< drive's turns per turn or metre */
+    int32_t can_fault;                          /**< MCT_CAN_FAULT_... */
+    double can_fault_time, can_fault_duration;  /**< [s] */
+    int32_t can_encoder_node[MCT_MAX_ENCODERS]; /**< drive that reads it; -1: see the key's doc */
+    double can_encoder_ratio[MCT_MAX_ENCODERS]; /**< drive's turns per turn or metre */
     /* [variation] */
     double variation_spread;
     int32_t variation_seed;

@@ -52,9 +52,9 @@ typedef struct {
     int32_t last_counts;              /**< of the driven coordinate */
     mct_real track_half_length;       /**< [m], of a driven length */
     mct_real overspeed;               /**< [rad/s] of the driven angle */
-    uint32_t rearm_limit;             /**< ticks of good feedback after which a fault is forgotten; 0: never */
-    uint32_t good_ticks;              /**< of good feedback since a fault was latched */
-    uint64_t rearmed;                 /**< times that faults were cleared */
+    uint32_t rearm_limit; /**< ticks of good feedback after which a fault is forgotten; 0: never */
+    uint32_t good_ticks;  /**< of good feedback since a fault was latched */
+    uint64_t rearmed;     /**< times that faults were cleared */
 } mct_supervisor;
 
 /** Voltages of a closed loop are whole millivolts: what a drive can be told, and the same in a simulation. */

@@ -19,11 +19,11 @@
 
 #define MCT_MAX_COORDINATES 3                             /**< of a system with a kernel */
 #define MCT_MAX_STATES      (2 * MCT_MAX_COORDINATES + 1) /**< coordinates, rates, current */
-#define MCT_MAX_ENCODERS    2 /**< coordinates of a system with a motor */
+#define MCT_MAX_ENCODERS    2                             /**< coordinates of a system with a motor */
 #define MCT_MAX_PARAMETERS  24
 #define MCT_MAX_PARTICLES   4
 
-#define MCT_PHASES 2 /**< of a prescribed motion: one an axis */
+#define MCT_PHASES          2 /**< of a prescribed motion: one an axis */
 
 struct mct_scene;
 struct mct_message;
@@ -59,7 +59,7 @@ typedef struct {
  * input.
  */
 typedef struct {
-    int states;                                                      /**< 2 n */
+    int states;                                                /**< 2 n */
     double A[(2 * MCT_MAX_ENCODERS) * (2 * MCT_MAX_ENCODERS)]; /**< row-major, states x states */
     double B[2 * MCT_MAX_ENCODERS];
 } mct_linear_model;
@@ -84,25 +84,31 @@ typedef void (*mct_kernel)(const void *constants, mct_state *state, mct_real inp
 typedef struct {
     mct_field position;
     mct_field rate;
-    bool is_angle;          /**< kept within a turn; its encoder counts per turn, else per metre */
-    bool is_cyclic;         /**< no force depends on it: not brought home by a controller */
-    mct_field encoder;      /**< counts per turn or metre, a key of [sensors] */
-    mct_field encoder_node; /**< drive that reads it, a key of [can] */
+    bool is_angle;           /**< kept within a turn; its encoder counts per turn, else per metre */
+    bool is_cyclic;          /**< no force depends on it: not brought home by a controller */
+    mct_field encoder;       /**< counts per turn or metre, a key of [sensors] */
+    mct_field encoder_node;  /**< drive that reads it, a key of [can] */
     mct_field encoder_ratio; /**< turns of the drive's encoder per turn or metre, a key of [can] */
-    double position_weight; /**< default deviation that costs a controller as much as the full input */
+    double position_weight;  /**< default deviation that costs a controller as much as the full input */
     double rate_weight;
 } mct_coordinate;
 
 /** The three keys of an encoder, as MCT_ENCODER("arm", "turn", "1/turn", 4, 4096, "the arm"). */
-#define MCT_ENCODER(name, per, unit, fewest, standard, what)                                                        \
-    .encoder = {name "_counts_per_" per, unit, "encoder of " what, MCT_FIELD_REAL, fewest, 1e9, standard, \
-                NULL, 0},                                                                                     \
-    .encoder_node = {name "_node", "",                                                                        \
-                     "drive that reads the encoder of " what                                                  \
-                     "; -1: the motor's where it can, else the next number",                                  \
-                     MCT_FIELD_INTEGER, -1, 63, -1, NULL, 0},                                                 \
-    .encoder_ratio = MCT_QUANTITY(name "_ratio", "", -1e4, 1e4, 1,                                            \
-                                  "turns of the drive's encoder per " per " of " what                         \
+#define MCT_ENCODER(name, per, unit, fewest, standard, what)                                                 \
+    .encoder =                                                                                               \
+        {name "_counts_per_" per, unit, "encoder of " what, MCT_FIELD_REAL, fewest, 1e9, standard, NULL, 0}, \
+    .encoder_node = {name "_node",                                                                           \
+                     "",                                                                                     \
+                     "drive that reads the encoder of " what                                                 \
+                     "; -1: the motor's where it can, else the next number",                                 \
+                     MCT_FIELD_INTEGER,                                                                      \
+                     -1,                                                                                     \
+                     63,                                                                                     \
+                     -1,                                                                                     \
+                     NULL,                                                                                   \
+                     0},                                                                                     \
+    .encoder_ratio = MCT_QUANTITY(name "_ratio", "", -1e4, 1e4, 1,                                           \
+                                  "turns of the drive's encoder per " per " of " what                        \
                                   "; negative: mounted the other way round")
 
 /** What a controller and hardware have to know of a system with a motor. Each of its coordinates has an encoder. */

@@ -272,7 +272,8 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
     mct_real without[MCT_MAX_ENCODERS];
     mct_real with_one_volt[MCT_MAX_ENCODERS];
     controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 0, without);
-    controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 1, with_one_volt);
+    controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 1,
+                                              with_one_volt);
     return (wanted - without[0]) / (with_one_volt[0] - without[0]);
 }
 

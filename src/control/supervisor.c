@@ -22,13 +22,13 @@ static const struct {
     [MCT_FAULT_OVERSPEED] = {"overspeed", "the driven axis turned faster than controller.overspeed"},
     [MCT_FAULT_HAL] = {"hal_error", "the hardware layer could not read or write"},
     [MCT_FAULT_STOPPED] = {"stopped", "the run was stopped from outside"},
-    [MCT_FAULT_LINK_DOWN] = {"link_down", "nothing could be sent to the drive; look at the bus and its interface"},
+    [MCT_FAULT_LINK_DOWN] = {"link_down",
+                             "nothing could be sent to the drive; look at the bus and its interface"},
     [MCT_FAULT_NOT_READY] = {"drive_not_ready",
                              "the drive ceased to obey commands; look at its supply and its watchdog"},
     [MCT_FAULT_DRIVE] = {"drive_fault", "a drive reported an error; look it up in the drive's manual"},
-    [MCT_FAULT_RESTARTED] =
-        {"drive_restarted",
-         "a drive restarted and forgot its position; bring the mechanism to its initial position, then re-arm"},
+    [MCT_FAULT_RESTARTED] = {"drive_restarted", "a drive restarted and forgot its position; bring the "
+                                                "mechanism to its initial position, then re-arm"},
     [MCT_FAULT_ESTOP] = {"estop", "an emergency stop was called on the bus"},
 };
 
@@ -140,8 +140,10 @@ static void watch_flags(mct_supervisor *supervisor, uint32_t flags)
         uint32_t flag;
         mct_fault fault;
     } meanings[] = {
-        {MCT_READING_INVALID, MCT_FAULT_SENSOR_INVALID}, {MCT_READING_LINK_DOWN, MCT_FAULT_LINK_DOWN},
-        {MCT_READING_DRIVE_FAULT, MCT_FAULT_DRIVE},      {MCT_READING_RESTARTED, MCT_FAULT_RESTARTED},
+        {MCT_READING_INVALID, MCT_FAULT_SENSOR_INVALID},
+        {MCT_READING_LINK_DOWN, MCT_FAULT_LINK_DOWN},
+        {MCT_READING_DRIVE_FAULT, MCT_FAULT_DRIVE},
+        {MCT_READING_RESTARTED, MCT_FAULT_RESTARTED},
         {MCT_READING_ESTOP, MCT_FAULT_ESTOP},
     };
     for (size_t i = 0; i < sizeof meanings / sizeof meanings[0]; i++) {
@@ -180,7 +182,8 @@ mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *read
     }
     watch_motion(supervisor, reading, wanted);
     if (supervisor->latched != 0) {
-        const uint32_t lasting = MCT_READING_NOT_READY | MCT_READING_DRIVE_FAULT; /* until the drive is armed */
+        const uint32_t lasting =
+            MCT_READING_NOT_READY | MCT_READING_DRIVE_FAULT; /* until the drive is armed */
         supervisor->good_ticks += (reading->flags & ~lasting) == 0;
         return 0;
     }

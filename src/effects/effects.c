@@ -19,7 +19,11 @@ const mct_effect mct_effects[MCT_EFFECT_COUNT] = {
     {"centrifugal", "of a rotating frame, outwards", MCT_CENTRIFUGAL, NULL, {0, MCT_CENTRIFUGAL, 0}},
     {"coriolis", "of a rotating frame, across the velocity", MCT_CORIOLIS, NULL, {0, MCT_CORIOLIS, 0}},
     {"euler", "of a frame whose rotation changes", MCT_EULER_FORCE, NULL, {0, MCT_EULER_FORCE, 0}},
-    {"stokes", "viscous drag of a slow sphere, proportional to its velocity", MCT_STOKES, NULL, {0, MCT_STOKES, 0}},
+    {"stokes",
+     "viscous drag of a slow sphere, proportional to its velocity",
+     MCT_STOKES,
+     NULL,
+     {0, MCT_STOKES, 0}},
     {"buoyancy", "weight of the displaced fluid", MCT_BUOYANCY, NULL, {0, MCT_BUOYANCY, 0}},
     {"forcing", "a force that changes in time as prescribed", MCT_FORCING, NULL, {0, MCT_FORCING, 0}},
 };

@@ -102,7 +102,8 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
     }
     const bool bounded = (plant->effects & MCT_SATURATION) && (plant->effects & MCT_MOTOR);
     plant->substeps = scene->substeps;
-    plant->bound = bounded ? (mct_real)scene->parameters[plant->system->actuation->supply_parameter] : MCT_REAL_MAX;
+    plant->bound =
+        bounded ? (mct_real)scene->parameters[plant->system->actuation->supply_parameter] : MCT_REAL_MAX;
     mct_state_set(plant->system, mct_state_count(plant->system, plant->effects), scene->initial,
                   &plant->state);
     return plant->system->prepare(scene, scene->dt / scene->substeps, &plant->constants, why);

@@ -511,11 +511,11 @@ static mct_status refuse_idle_keys(const reader *self)
             begin_key(self, value);
             if (idle_state) {
                 mct_message_add(self->why, "found a state that the scene has not; allowed with ");
-                mct_message_add(self->why, mct_state_is_phase(self->system, i)
-                                               ? ((self->system->effects & MCT_FORCING)
-                                                      ? "effects.forcing = true"
-                                                      : "effects.base_motion = true")
-                                               : "effects.motor = inductive and an inductance");
+                mct_message_add(self->why,
+                                mct_state_is_phase(self->system, i)
+                                    ? ((self->system->effects & MCT_FORCING) ? "effects.forcing = true"
+                                                                             : "effects.base_motion = true")
+                                    : "effects.motor = inductive and an inductance");
             } else {
                 const mct_scene_key selector = mct_key_at(table, self->system, 0);
                 const char *between = "";

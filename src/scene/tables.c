@@ -42,9 +42,9 @@ static const char *const faults[] = {"none", "nan", "silent", "frozen", NULL};
 static const char *const can_protocols[] = {"native", "vesc", "odrive", NULL};
 static const char *const can_modes[] = {"voltage", "foc", "torque", NULL};
 static const char *const can_firmwares[] = {"0.6", "0.5", NULL};
-static const char *const can_faults[] = {"none",    "drop",      "drop_commands", "delay",  "duplicate",
-                                         "reorder", "short",     "remote",        "format", "nan",
-                                         "silence", "reboot",    "estop",         "error",  NULL};
+static const char *const can_faults[] = {"none",    "drop",   "drop_commands", "delay",  "duplicate",
+                                         "reorder", "short",  "remote",        "format", "nan",
+                                         "silence", "reboot", "estop",         "error",  NULL};
 
 /* The names of systems and steppers stand in mct_systems and mct_steppers: see mct_choice_name. */
 static const mct_field scene_fields[] = {
@@ -56,9 +56,10 @@ static const mct_field scene_fields[] = {
     REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
     CHOICE("precision", precisions, MCT_PRECISION_DOUBLE, precision,
            "scalar of the simulation and the controller"),
-    TEXT("hal", hal,
-         "the hardware: sim; ring (simulated drives on a simulated bus); socketcan:INTERFACE; candump:FILE (a "
-         "recorded bus)"),
+    TEXT(
+        "hal", hal,
+        "the hardware: sim; ring (simulated drives on a simulated bus); socketcan:INTERFACE; candump:FILE (a "
+        "recorded bus)"),
     BOOLEAN("realtime", 0, realtime, "paced by the clock instead of by the simulation"),
 };
 
@@ -104,25 +105,30 @@ static const mct_field sensor_fields[] = {
 
 static const mct_field can_fields[] = {
     CHOICE("protocol", can_protocols, MCT_CAN_NATIVE, can_protocol, "what the drives speak"),
-    CHOICE("mode", can_modes, MCT_CAN_MODE_VOLTAGE, can_mode,
-           "what a drive is told: voltage (native; vesc with a brushed motor; odrive with a gimbal motor), foc "
-           "(vesc with a three-phase motor) or torque (odrive, the armature computed here)"),
+    CHOICE(
+        "mode", can_modes, MCT_CAN_MODE_VOLTAGE, can_mode,
+        "what a drive is told: voltage (native; vesc with a brushed motor; odrive with a gimbal motor), foc "
+        "(vesc with a three-phase motor) or torque (odrive, the armature computed here)"),
     CHOICE("firmware", can_firmwares, MCT_CAN_FIRMWARE_0_6, can_firmware, "of an odrive"),
     INTEGER("node", "", 0, 63, 1, can_node, "number of the drive that powers the motor"),
     BOOLEAN("inverted", 0, can_inverted, "positive volts turn the motor the other way"),
-    INTEGER("pole_pairs", "", 1, 100, 7, can_pole_pairs, "of the motor of a vesc, which tells electrical turns"),
+    INTEGER("pole_pairs", "", 1, 100, 7, can_pole_pairs,
+            "of the motor of a vesc, which tells electrical turns"),
     INTEGER("bitrate", "bit/s", 10000, 1000000, 1000000, can_bitrate, "of the bus, for its load"),
     REAL("highest_load", "", 0.01, 10, 0.7, can_highest_load, "fraction of the bus that may be used"),
-    REAL("watchdog", "s", 0, 2, 0.1, can_watchdog,
-         "after this long without a command a drive stops by itself: sent to a native drive, in the others to "
-         "be configured; verified at the start where the drive tells; 0: none, at your own risk"),
+    REAL(
+        "watchdog", "s", 0, 2, 0.1, can_watchdog,
+        "after this long without a command a drive stops by itself: sent to a native drive, in the others to "
+        "be configured; verified at the start where the drive tells; 0: none, at your own risk"),
     REAL("startup", "s", 0.1, 60, 3, can_startup, "longest wait for the drives' messages at the start"),
     REAL("duty_ramp", "1/s", 0.1, 1e6, 20, can_duty_ramp, "how fast a simulated vesc changes its duty"),
     BOOLEAN("lockstep", 0, can_lockstep,
             "over a socket: paced by the drive's answers instead of the clock; for simulated drives only"),
-    CHOICE("fault", can_faults, MCT_CAN_FAULT_NONE, can_fault, "what befalls simulated drives and their frames"),
+    CHOICE("fault", can_faults, MCT_CAN_FAULT_NONE, can_fault,
+           "what befalls simulated drives and their frames"),
     REAL("fault_time", "s", 0, LONGEST, 1, can_fault_time, "when"),
-    REAL("fault_duration", "s", 0, LONGEST, 0.1, can_fault_duration, "for how long; 0: one tick; a reboot takes 50 ms at least, frames of a delay come 8 ticks late"),
+    REAL("fault_duration", "s", 0, LONGEST, 0.1, can_fault_duration,
+         "for how long; 0: one tick; a reboot takes 50 ms at least, frames of a delay come 8 ticks late"),
 };
 
 static const mct_field variation_fields[] = {

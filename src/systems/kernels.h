@@ -42,13 +42,13 @@
     stepper##_##motor##_0, stepper##_##motor##_1, stepper##_##motor##_2, stepper##_##motor##_3, \
         stepper##_##motor##_4, stepper##_##motor##_5, stepper##_##motor##_6, stepper##_##motor##_7
 
-#define MCT_KERNEL(stepper, remainder, motor, others)                                                      \
-    static void stepper##_##motor##_##others(const void *constants, mct_state *state, mct_real u,          \
-                                             int32_t steps)                                                \
-    {                                                                                                      \
-        const constants_t *k = constants;                                                                  \
+#define MCT_KERNEL(stepper, remainder, motor, others)                                                   \
+    static void stepper##_##motor##_##others(const void *constants, mct_state *state, mct_real u,       \
+                                             int32_t steps)                                             \
+    {                                                                                                   \
+        const constants_t *k = constants;                                                               \
         mct_advance(stepper##_increments, friction, k, remainder, (motor) + (others), MCT_MAX_ENCODERS, \
-                    state, u, steps);                                                                      \
+                    state, u, steps);                                                                   \
     }
 
 /* The kernel of a stepper for an effect set; NULL where the stepper does not suit the system. */
@@ -67,68 +67,70 @@ static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int ste
  * Kernels of a system without a motor: one for each subset of up to five switches, listed in the order of its
  * `switches`. n: its coordinates.
  */
-#define MCT_SWITCH_KERNEL(stepper, remainder, n, number, mask)                                               \
-    static void stepper##_##number(const void *constants, mct_state *state, mct_real u, int32_t steps)       \
-    {                                                                                                        \
-        const constants_t *k = constants;                                                                    \
-        mct_advance(stepper##_increments, friction, k, remainder, (mask) | MCT_ALWAYS, n, state, u, steps);  \
+#define MCT_SWITCH_KERNEL(stepper, remainder, n, number, mask)                                              \
+    static void stepper##_##number(const void *constants, mct_state *state, mct_real u, int32_t steps)      \
+    {                                                                                                       \
+        const constants_t *k = constants;                                                                   \
+        mct_advance(stepper##_increments, friction, k, remainder, (mask) | MCT_ALWAYS, n, state, u, steps); \
     }
 
-#define MCT_SWITCH_INCREMENTS(stepper, expression)                                                           \
-    MCT_INLINE void stepper##_increments(const void *constants, unsigned effects, const mct_real *x,         \
-                                         mct_real u, mct_real *dx)                                           \
-    {                                                                                                        \
-        const constants_t *k = constants;                                                                    \
-        (void)effects;                                                                                       \
-        (void)u;                                                                                             \
-        expression;                                                                                          \
+#define MCT_SWITCH_INCREMENTS(stepper, expression)                                                   \
+    MCT_INLINE void stepper##_increments(const void *constants, unsigned effects, const mct_real *x, \
+                                         mct_real u, mct_real *dx)                                   \
+    {                                                                                                \
+        const constants_t *k = constants;                                                            \
+        (void)effects;                                                                               \
+        (void)u;                                                                                     \
+        expression;                                                                                  \
     }
 
-#define MCT_PAIR(stepper, remainder, n, number, mask, A)                                                     \
-    MCT_SWITCH_KERNEL(stepper, remainder, n, number##0, mask)                                                \
+#define MCT_PAIR(stepper, remainder, n, number, mask, A)      \
+    MCT_SWITCH_KERNEL(stepper, remainder, n, number##0, mask) \
     MCT_SWITCH_KERNEL(stepper, remainder, n, number##1, (mask) | (A))
-#define MCT_QUAD(stepper, remainder, n, number, mask, A, B)                                                  \
-    MCT_PAIR(stepper, remainder, n, number##0, mask, A)                                                      \
+#define MCT_QUAD(stepper, remainder, n, number, mask, A, B) \
+    MCT_PAIR(stepper, remainder, n, number##0, mask, A)     \
     MCT_PAIR(stepper, remainder, n, number##1, (mask) | (B), A)
-#define MCT_OCTET(stepper, remainder, n, number, mask, A, B, C)                                              \
-    MCT_QUAD(stepper, remainder, n, number##0, mask, A, B)                                                   \
+#define MCT_OCTET(stepper, remainder, n, number, mask, A, B, C) \
+    MCT_QUAD(stepper, remainder, n, number##0, mask, A, B)      \
     MCT_QUAD(stepper, remainder, n, number##1, (mask) | (C), A, B)
 
-#define MCT_PAIR_NAMES(stepper, number)  stepper##_##number##0, stepper##_##number##1
-#define MCT_QUAD_NAMES(stepper, number)  MCT_PAIR_NAMES(stepper, number##0), MCT_PAIR_NAMES(stepper, number##1)
-#define MCT_OCTET_NAMES(stepper, number) MCT_QUAD_NAMES(stepper, number##0), MCT_QUAD_NAMES(stepper, number##1)
+#define MCT_PAIR_NAMES(stepper, number) stepper##_##number##0, stepper##_##number##1
+#define MCT_QUAD_NAMES(stepper, number) MCT_PAIR_NAMES(stepper, number##0), MCT_PAIR_NAMES(stepper, number##1)
+#define MCT_OCTET_NAMES(stepper, number) \
+    MCT_QUAD_NAMES(stepper, number##0), MCT_QUAD_NAMES(stepper, number##1)
 
 /* The kernel of a stepper of a system without switches. */
-#define MCT_KERNELS_0(stepper, remainder, n, expression)                                                     \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
-    MCT_SWITCH_KERNEL(stepper, remainder, n, s, 0)                                                           \
+#define MCT_KERNELS_0(stepper, remainder, n, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)           \
+    MCT_SWITCH_KERNEL(stepper, remainder, n, s, 0)       \
     static const mct_kernel stepper##_kernels[1] = {stepper##_s};
 /* Kernels of a stepper for two, three, four and five switches; bit i of the index is switch i. */
 #define MCT_KERNELS_2(...) MCT_KERNELS_2_OF(__VA_ARGS__)
-#define MCT_KERNELS_2_OF(stepper, remainder, n, A, B, expression)                                               \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
-    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                                                              \
+#define MCT_KERNELS_2_OF(stepper, remainder, n, A, B, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                    \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                   \
     static const mct_kernel stepper##_kernels[4] = {MCT_QUAD_NAMES(stepper, s)};
 #define MCT_KERNELS_3(...) MCT_KERNELS_3_OF(__VA_ARGS__)
-#define MCT_KERNELS_3_OF(stepper, remainder, n, A, B, C, expression)                                            \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
-    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                                                          \
+#define MCT_KERNELS_3_OF(stepper, remainder, n, A, B, C, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                       \
+    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                  \
     static const mct_kernel stepper##_kernels[8] = {MCT_OCTET_NAMES(stepper, s)};
 #define MCT_KERNELS_4(...) MCT_KERNELS_4_OF(__VA_ARGS__) /* so that a list of switches may be a macro */
-#define MCT_KERNELS_4_OF(stepper, remainder, n, A, B, C, D, expression)                                         \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
-    MCT_OCTET(stepper, remainder, n, s0, 0, A, B, C)                                                         \
-    MCT_OCTET(stepper, remainder, n, s1, D, A, B, C)                                                         \
-    static const mct_kernel stepper##_kernels[16] = {MCT_OCTET_NAMES(stepper, s0), MCT_OCTET_NAMES(stepper, s1)};
+#define MCT_KERNELS_4_OF(stepper, remainder, n, A, B, C, D, expression)            \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                     \
+    MCT_OCTET(stepper, remainder, n, s0, 0, A, B, C)                               \
+    MCT_OCTET(stepper, remainder, n, s1, D, A, B, C)                               \
+    static const mct_kernel stepper##_kernels[16] = {MCT_OCTET_NAMES(stepper, s0), \
+                                                     MCT_OCTET_NAMES(stepper, s1)};
 #define MCT_KERNELS_5(...) MCT_KERNELS_5_OF(__VA_ARGS__)
-#define MCT_KERNELS_5_OF(stepper, remainder, n, A, B, C, D, E, expression)                                      \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                                               \
-    MCT_OCTET(stepper, remainder, n, s00, 0, A, B, C)                                                        \
-    MCT_OCTET(stepper, remainder, n, s01, D, A, B, C)                                                        \
-    MCT_OCTET(stepper, remainder, n, s10, E, A, B, C)                                                        \
-    MCT_OCTET(stepper, remainder, n, s11, (D) | (E), A, B, C)                                                \
-    static const mct_kernel stepper##_kernels[32] = {                                                        \
-        MCT_OCTET_NAMES(stepper, s00), MCT_OCTET_NAMES(stepper, s01), MCT_OCTET_NAMES(stepper, s10),         \
+#define MCT_KERNELS_5_OF(stepper, remainder, n, A, B, C, D, E, expression)                           \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                       \
+    MCT_OCTET(stepper, remainder, n, s00, 0, A, B, C)                                                \
+    MCT_OCTET(stepper, remainder, n, s01, D, A, B, C)                                                \
+    MCT_OCTET(stepper, remainder, n, s10, E, A, B, C)                                                \
+    MCT_OCTET(stepper, remainder, n, s11, (D) | (E), A, B, C)                                        \
+    static const mct_kernel stepper##_kernels[32] = {                                                \
+        MCT_OCTET_NAMES(stepper, s00), MCT_OCTET_NAMES(stepper, s01), MCT_OCTET_NAMES(stepper, s10), \
         MCT_OCTET_NAMES(stepper, s11)};
 
 /* The kernel of a stepper for an effect set, by the system's switches (0 ends them). */
@@ -144,7 +146,8 @@ static inline mct_kernel mct_switched_kernel_of(const mct_kernel *const *kernels
 }
 
 /* Of a system without dry friction. */
-MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                                mct_real *dx)
 {
     (void)constants;
     (void)effects;

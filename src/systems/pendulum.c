@@ -186,8 +186,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
 #define SWITCHES MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB, MCT_DRAG
 static const uint32_t switches[] = {SWITCHES, 0};
 
-MCT_KERNELS_4(seed, k->step.remainder, 1, SWITCHES,
-              mct_seed(derivative, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_4(seed, k->step.remainder, 1, SWITCHES, mct_seed(derivative, k, k->step, effects, 1, x, u, dx))
 MCT_KERNELS_4(euler, k->step.remainder, 1, SWITCHES,
               mct_euler(kick_implicit, k, k->step, effects, 1, x, u, dx))
 MCT_KERNELS_4(leap, k->step.remainder, 1, SWITCHES,

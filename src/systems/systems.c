@@ -4,16 +4,8 @@
 #include "systems.h"
 
 const mct_system *const mct_systems[MCT_SYSTEM_COUNT] = {
-    &mct_cart_pole,
-    &mct_reaction_wheel,
-    &mct_pendulum,
-    &mct_spring_pendulum,
-    &mct_linked_particles,
-    &mct_moving_base,
-    &mct_rotating_frame,
-    &mct_solid_pendulum,
-    &mct_block,
-    &mct_falling_sphere,
+    &mct_cart_pole,   &mct_reaction_wheel, &mct_pendulum,       &mct_spring_pendulum, &mct_linked_particles,
+    &mct_moving_base, &mct_rotating_frame, &mct_solid_pendulum, &mct_block,           &mct_falling_sphere,
 };
 
 static const mct_field current_field =
@@ -27,7 +19,8 @@ int mct_encoder_count(const mct_system *system)
 int mct_state_count(const mct_system *system, uint32_t effects)
 {
     const bool moves = (effects & MCT_CLOCK) && system->phases != NULL;
-    return 2 * system->coordinate_count + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0) + (moves ? MCT_PHASES : 0);
+    return 2 * system->coordinate_count + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0) +
+           (moves ? MCT_PHASES : 0);
 }
 
 bool mct_state_is_phase(const mct_system *system, int index)
@@ -37,7 +30,8 @@ bool mct_state_is_phase(const mct_system *system, int index)
 
 bool mct_state_is_phase_angle(const mct_system *system, int index)
 {
-    return mct_state_is_phase(system, index) && system->phases[index - 2 * system->coordinate_count].unit[0] == 'r';
+    return mct_state_is_phase(system, index) &&
+           system->phases[index - 2 * system->coordinate_count].unit[0] == 'r';
 }
 
 const mct_field *mct_state_field(const mct_system *system, int index)
@@ -55,7 +49,8 @@ const mct_field *mct_state_field(const mct_system *system, int index)
 uint32_t mct_scene_effects(const mct_scene *scene)
 {
     const mct_system *system = mct_systems[scene->system];
-    if ((scene->effects & MCT_MOTOR_INDUCTIVE) && scene->parameters[system->actuation->inductance_parameter] == 0) {
+    if ((scene->effects & MCT_MOTOR_INDUCTIVE) &&
+        scene->parameters[system->actuation->inductance_parameter] == 0) {
         return (scene->effects & ~(uint32_t)MCT_MOTOR) | MCT_MOTOR_QUASI_STATIC;
     }
     return scene->effects;

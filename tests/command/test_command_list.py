@@ -4,7 +4,9 @@
 def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(result):
     found = result("list")
     assert [key for key in ("systems", "effects", "steppers", "controllers") if key not in found] == []
-    assert [system["name"] for system in found["systems"]] == ["cart_pole", "reaction_wheel"]
+    assert [system["name"] for system in found["systems"]] == [
+        "cart_pole", "reaction_wheel", "pendulum", "spring_pendulum", "linked_particles", "moving_base",
+        "rotating_frame", "solid_pendulum", "block", "falling_sphere"]  # fmt: skip
     assert {stepper["name"]: stepper["order"] for stepper in found["steppers"]} == {
         "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "expo": 4,
     }  # fmt: skip

@@ -158,6 +158,12 @@ static void command(ends *self, const uint8_t bytes[FUZZ_CAN_FRAME])
         FUZZ_RULE(fabs(device->value - sent) <= 0.5001e-3 + 1e-6 * fabs(sent), "%g V arrive as %g V", sent,
                   device->value);
     }
+    if (device->wish == MCT_CAN_WISH_DUTY) {
+        const uint32_t bits = (uint32_t)frame.data[0] << 24 | (uint32_t)frame.data[1] << 16 |
+                              (uint32_t)frame.data[2] << 8 | frame.data[3];
+        FUZZ_RULE((int32_t)bits <= 100000 && (int32_t)bits >= -100000, "no duty beyond the supply: %d",
+                  (int32_t)bits);
+    }
     if (device->wish == MCT_CAN_WISH_DUTY && device->value != 0) {
         FUZZ_RULE(device->value * sent > 0, "duty has the sign of its voltage");
     }

@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "fuzz/fuzz.h"
-#include "hal/socketcan/axes.h"
+#include "hal/socketcan/can.h"
+#include "hal/socketcan/ring.h"
+#include "mctau/controller.h"
 #include "mctau/plant.h"
 #include "mctau/scene.h"
 #include "mctau/supervisor.h"
@@ -27,7 +29,9 @@ static void check_message(const mct_message *why)
 static void prepare(const mct_scene *scene)
 {
     static mct_plant plant;
-    static mct_can_axes axes;
+    static mct_can can;
+    static mct_can_ring ring;
+    static mct_controller controller;
     mct_supervisor supervisor;
     mct_message why = {""};
     FUZZ_RULE(mct_scene_check(scene, &why) == MCT_OK, "a scene that was read passes the check: %s", why.text);
@@ -39,10 +43,23 @@ static void prepare(const mct_scene *scene)
         }
     }
     mct_message_clear(&why);
-    if (mct_can_axes_init(&axes, scene, &why) != MCT_OK) {
+    mct_can_ring_init(&ring);
+    if (mct_can_init(&can, scene, mct_can_ring_end(&ring, 0), true, &why) != MCT_OK) {
         check_message(&why);
     } else {
-        FUZZ_RULE(axes.count >= 1 && axes.count <= MCT_CAN_MAX_AXES, "there is a drive");
+        FUZZ_RULE(can.axes.count >= 1 && can.axes.count <= MCT_CAN_MAX_AXES, "there is a drive");
+        FUZZ_RULE(can.report.load > 0 && can.report.load <= scene->can_highest_load,
+                  "the bus can bear the load: %g", can.report.load);
+    }
+    mct_message_clear(&why);
+    if (scene->controller != MCT_CONTROLLER_NONE) {
+        if (mct_controller_init(&controller, scene, &why) != MCT_OK) {
+            check_message(&why);
+        } else {
+            const mct_reading reading = {{100, -100}, 0, 0};
+            mct_controller_update(&controller, &reading, 0);
+            FUZZ_RULE(controller.limit >= 0, "a controller has a limit: %g", (double)controller.limit);
+        }
     }
     mct_supervisor_init(&supervisor, scene);
     FUZZ_RULE(supervisor.limit >= 0 && supervisor.stale_us >= 5000, "limits of the supervisor make sense");

@@ -81,15 +81,17 @@ static const mct_can_protocol *read_settings(void)
     memset(&scene, 0, sizeof scene);
     memset(&axis, 0, sizeof axis);
     memset(&device, 0, sizeof device);
-    const mct_can_protocol *protocol = mct_can_protocols[integer()];
+    scene.can_protocol = (int32_t)integer();
     scene.can_mode = (int32_t)integer();
     scene.can_firmware = (int32_t)integer();
+    const mct_can_protocol *protocol = mct_can_protocol_of(&scene);
     scene.can_pole_pairs = 7;
     scene.can_watchdog = 0.1;
     axis.protocol = device.protocol = protocol;
     axis.scene = device.scene = &scene;
     axis.node = device.node = (uint8_t)integer();
     axis.roles = device.roles = MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER | MCT_CAN_OF_SPARE;
+    device.counts_per_turn = 4096;
     axis.motor = (mct_can_motor){12, 2, 0.05, 0.25, integer() != 0};
     for (int i = 0; i < MCT_CAN_ENCODERS; i++) {
         axis.encoders[i].used = true;
@@ -100,16 +102,18 @@ static const mct_can_protocol *read_settings(void)
 
 static void dump_messages(void)
 {
+    static const char *const files[] = {"native", "vesc", "odrive", "odrive_0_5"};
     printf("[");
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
-        const mct_can_protocol *protocol = mct_can_protocols[p];
+    for (int p = 0; p <= MCT_CAN_PROTOCOL_COUNT; p++) {
+        scene.can_protocol = p < MCT_CAN_PROTOCOL_COUNT ? p : MCT_CAN_ODRIVE;
+        scene.can_firmware = p < MCT_CAN_PROTOCOL_COUNT ? MCT_CAN_FIRMWARE_0_6 : MCT_CAN_FIRMWARE_0_5;
+        const mct_can_protocol *protocol = mct_can_protocol_of(&scene);
         for (int i = 0; i < protocol->message_count; i++) {
             const mct_can_message *message = &protocol->messages[i];
-            printf("%s{\"protocol\": \"%s\", \"name\": \"%s\", \"id\": %" PRIu32
+            printf("%s{\"file\": \"%s\", \"number\": %d, \"name\": \"%s\", \"id\": %" PRIu32
                    ", \"extended\": %d, \"length\": %d, \"from_drive\": %d, \"period\": %.17g}",
-                   p + i > 0 ? ", " : "", protocol->name, message->name,
-                   protocol->identifier(message->code, 1), protocol->extended, message->length,
-                   message->from_drive, message->period);
+                   p + i > 0 ? ", " : "", files[p], i, message->name, protocol->identifier(message->code, 1),
+                   protocol->extended, message->length, message->from_drive, message->period);
         }
     }
     printf("]\n");
@@ -139,6 +143,7 @@ static void dump_report(void)
     device.estopped = flags >> 1 & 1;
     device.restarted = flags >> 2 & 1;
     device.encoder_invalid = flags >> 3 & 1;
+    device.has_driven = flags >> 4 & 1;
     device.counts[0] = (int32_t)integer();
     device.counts[1] = (int32_t)integer();
     device.sequence = (uint8_t)integer();

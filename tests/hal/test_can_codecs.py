@@ -79,6 +79,11 @@ def settings(protocol, mode=VOLTAGE, firmware=FIRMWARE_0_6, inverted=0):
     return f"{PROTOCOLS[protocol]} {mode} {firmware} {NODE} {inverted}"
 
 
+def file_of(protocol, firmware=FIRMWARE_0_6):
+    """Name of the DBC file that a drive's messages are in."""
+    return "odrive_0_5" if protocol == "odrive" and firmware == FIRMWARE_0_5 else protocol
+
+
 def frame_words(message, data):
     return f"{message.frame_id} {int(message.is_extended_frame)} 0 {len(data)} {data.hex() or '-'}"
 
@@ -160,26 +165,27 @@ def test_every_message_is_explained(databases):
 
 
 def test_tables_of_the_codecs_are_those_of_the_dbc_files(dump, databases):
-    seen = {name: set() for name in PROTOCOLS}
+    seen = {name: set() for name in databases}
     for row in dump(["messages"])[0]:
-        database = databases[row["protocol"]]
-        message = database.get_message_by_name(row["name"])
-        where = (row["protocol"], row["name"])
+        message = databases[row["file"]].get_message_by_name(row["name"])
+        where = (row["file"], row["name"])
         assert message.frame_id == row["id"], where
         assert message.is_extended_frame == bool(row["extended"]), where
         assert message.length == row["length"], where
         # each tick: 1 ms in the file
         cycle = 1 if row["period"] == 0 else round(row["period"] * 1000) if row["period"] > 0 else 0
         assert (message.cycle_time or 0) == cycle, where
-        drive = {"native": "Drive", "vesc": "Vesc", "odrive": "ODrive"}[row["protocol"]]
+        drive = {"native": "Drive", "vesc": "Vesc"}.get(row["file"], "ODrive")
         if "Estop" not in row["name"]:  # which anybody may send
             assert message.senders == [drive if row["from_drive"] else "Host"], where
-        seen[row["protocol"]].add(row["name"])
+        seen[row["file"]].add(row["name"])
     # What a file has beyond the table serves who reads a recorded log.
     assert seen["native"] == {message.name for message in databases["native"].messages}
     assert seen["vesc"] == {message.name for message in databases["vesc"].messages}
     assert {message.name for message in databases["odrive"].messages} - seen["odrive"] == {
         "Get_Error", "Get_Iq", "Set_Limits"}
+    assert {message.name for message in databases["odrive_0_5"].messages} - seen["odrive_0_5"] == {
+        "Get_Motor_Error", "Get_Iq", "Set_Limits"}
 
 
 def test_firmware_0_5_differs_in_what_it_is_said_to_differ(databases):
@@ -193,7 +199,7 @@ def test_firmware_0_5_differs_in_what_it_is_said_to_differ(databases):
     differing = {message.name for message in old.messages
                  if message.name not in {other.name for other in new.messages}
                  or shape(message) != shape(new.get_message_by_name(message.name))}
-    assert differing == {"Heartbeat", "Clear_Errors", "Get_Motor_Error"}
+    assert differing == {"Heartbeat", "Clear_Errors", "Get_Motor_Error", "Get_Encoder_Count"}
 
 
 # --- what the host says ---
@@ -263,7 +269,7 @@ def test_odrive_torques_mean_the_volts_asked_for(dump, databases, mode, firmware
              f"{int(enable)}" for rate, wanted, enable, inverted in cases]
     obeyed = []
     for (rate, wanted, enable, inverted), answer in zip(cases, dump(lines)):
-        message, values = decode(databases["odrive_0_5" if firmware else "odrive"], answer)
+        message, values = decode(databases[file_of("odrive", firmware)], answer)
         held = as_float(wanted) if dump.is_float and math.isfinite(wanted) else wanted
         asked = -held if inverted else held
         if not enable or not math.isfinite(held):
@@ -286,7 +292,7 @@ def test_odrive_torques_mean_the_volts_asked_for(dump, databases, mode, firmware
 
 def heard(dump, databases, protocol, name, firmware=FIRMWARE_0_6):
     """(values by cantools, answer) of random payloads of a message."""
-    database = databases["odrive_0_5" if firmware else protocol]
+    database = databases[file_of(protocol, firmware)]
     message = database.get_message_by_name(name)
     pick = random.Random(SEED)
     payloads = [random_payload(pick, message) for _ in range(COUNT)]
@@ -357,11 +363,23 @@ def test_odrive_messages_are_heard_as_cantools_reads_them(dump, databases):
             assert answer["verdict"] == NOT_FINITE and answer["bus_voltage"] == 0
 
 
+def test_odrive_0_5_counts_are_heard_as_cantools_reads_them(dump, databases):
+    for values, answer in heard(dump, databases, "odrive", "Get_Encoder_Count", FIRMWARE_0_5):
+        assert answer["verdict"] == FEEDBACK
+        assert answer["counts"][0] == values["Shadow_Count"]
+        assert answer["turns"] == answer["rate"] == 0
+    for values, answer in heard(dump, databases, "odrive", "Get_Encoder_Estimates", FIRMWARE_0_5):
+        finite = math.isfinite(values["Pos_Estimate"]) and math.isfinite(values["Vel_Estimate"])
+        assert answer["verdict"] == (STATE if finite else NOT_FINITE)
+        assert answer["rate"] == (values["Vel_Estimate"] if finite else 0)
+        assert answer["turns"] == answer["counts"][0] == 0
+
+
 def test_odrive_heartbeats_are_heard_as_cantools_reads_them(dump, databases):
     flags = {"Motor_Error_Flag": "MOTOR_FAILED", "Encoder_Error_Flag": "ENCODER_FAILED",
              "Controller_Error_Flag": "CONTROLLER_FAILED"}
     for firmware in (FIRMWARE_0_6, FIRMWARE_0_5):
-        message = databases["odrive_0_5" if firmware else "odrive"].get_message_by_name("Heartbeat")
+        message = databases[file_of("odrive", firmware)].get_message_by_name("Heartbeat")
         choices = message.get_signal_by_name("Axis_Error").choices
         bit = {str(choice): value for value, choice in choices.items()}
         for values, answer in heard(dump, databases, "odrive", "Heartbeat", firmware):
@@ -405,12 +423,14 @@ def drive_value(pick, span):
                         pick.uniform(-1e6, 1e6), 10 ** pick.uniform(-30, 30), math.nan, math.inf, -math.inf])
 
 
-def reports(dump, databases, protocol, message, firmware=FIRMWARE_0_6):
-    """(device, values by cantools) of random devices; message is a number of the table."""
+def reports(dump, databases, protocol, name, firmware=FIRMWARE_0_6):
+    """(device, values by cantools) of random devices."""
+    message, = (row["number"] for row in dump(["messages"])[0]
+                if row["file"] == file_of(protocol, firmware) and row["name"] == name and row["from_drive"])
     pick = random.Random(SEED + message)
     quantities = ("turns", "rate", "volts", "amperes", "supply", "temperature")
     devices = [{"state": pick.randrange(4), "error": pick.choice([0, 0, 1, 3, 255, 256, 2**32 - 1]),
-                "flags": pick.randrange(8), "counts": [pick.randint(-2**31, 2**31 - 1) for _ in range(2)],
+                "flags": pick.randrange(8) + 16 * pick.randrange(2), "counts": [pick.randint(-2**31, 2**31 - 1) for _ in range(2)],
                 "sequence": pick.randrange(256), "serial": pick.randrange(2**16),
                 "time": pick.getrandbits(40), **{name: drive_value(pick, 100) for name in quantities}}
                for _ in range(COUNT)]
@@ -421,24 +441,23 @@ def reports(dump, databases, protocol, message, firmware=FIRMWARE_0_6):
     result = []
     for device, answer in zip(devices, dump(lines)):
         assert answer["has"]
-        found, values = decode(databases["odrive_0_5" if firmware else protocol], answer)
-        result.append((found.name, device, values))
+        found, values = decode(databases[file_of(protocol, firmware)], answer)
+        assert found.name == name
+        result.append((device, values))
     return result
 
 
 def test_native_reports_are_read_by_cantools(dump, databases):
-    for index, name, place in ((2, "Drive_Fb", 0), (3, "Drive_Fb2", 1)):
-        for found, device, values in reports(dump, databases, "native", index):
-            assert found == name
+    for name, place in (("Drive_Fb", 0), ("Drive_Fb2", 1)):
+        for device, values in reports(dump, databases, "native", name):
             assert values["counts"] == device["counts"][place]
             assert values["capture_time"] == device["time"] % 65536
             assert values["echo"] == device["sequence"]
             assert values["ready"] == (device["state"] == READY)
             assert values["fault"] == (device["state"] == FAULTY)
             flags = values["watchdog_expired"] + 2 * values["estopped"] + 4 * values["restarted"]
-            assert flags == device["flags"]
-    for found, device, values in reports(dump, databases, "native", 4):
-        assert found == "Drive_Status"
+            assert flags == device["flags"] % 8
+    for device, values in reports(dump, databases, "native", "Drive_Status"):
         assert round(values["bus_voltage"] * 100) == nearest(device["supply"] * 100, 0, 65535)
         assert round(values["current"] * 100) == nearest(device["amperes"] * 100, -32768, 32767)
         assert values["temperature"] == nearest(device["temperature"], -128, 127)
@@ -446,23 +465,20 @@ def test_native_reports_are_read_by_cantools(dump, databases):
 
 
 def test_vesc_reports_are_read_by_cantools(dump, databases):
-    for found, device, values in reports(dump, databases, "vesc", 3):
-        assert found == "STATUS_4"
+    for device, values in reports(dump, databases, "vesc", "STATUS_4"):
         assert 0 <= round(values["position"] / 0.02) < 18000
         assert round(values["temperature_fet"] * 10) == nearest(device["temperature"] * 10, -32768, 32767)
         if abs(device["turns"]) < 1000:
             within = (device["turns"] - values["position"] / 360) % 1
             assert min(within, 1 - within) <= 1 / 18000 + 1e-9
-    for found, device, values in reports(dump, databases, "vesc", 4):
-        assert found == "STATUS"
+    for device, values in reports(dump, databases, "vesc", "STATUS"):
         speed = device["rate"] * 60 * 7
         assert values["electrical_speed"] == nearest(speed, -2**31, 2**31 - 1)
         assert round(values["current"] * 10) == nearest(device["amperes"] * 10, -32768, 32767)
         if device["supply"] > 0 and math.isfinite(device["volts"]):
             duty = nearest(device["volts"] / device["supply"] * 1000, -32768, 32767)
             assert abs(round(values["duty"] * 1000) - duty) <= 1
-    for found, device, values in reports(dump, databases, "vesc", 5):
-        assert found == "STATUS_5"
+    for device, values in reports(dump, databases, "vesc", "STATUS_5"):
         assert round(values["voltage_in"] * 10) == nearest(device["supply"] * 10, -32768, 32767)
         if abs(device["turns"]) < 1e6:
             assert values["tachometer"] == math.floor(device["turns"] * 42)
@@ -473,11 +489,12 @@ def test_odrive_reports_are_read_by_cantools(dump, databases, firmware):
     def same(value, asked):
         return math.isnan(value) if math.isnan(asked) else value == as_float(asked)
 
-    for found, device, values in reports(dump, databases, "odrive", 5, firmware):
-        assert found == "Get_Encoder_Estimates"
+    for device, values in reports(dump, databases, "odrive", "Get_Encoder_Estimates", firmware):
+        if firmware and not device["flags"] & 16:  # it has not been in closed loop
+            assert values["Pos_Estimate"] == values["Vel_Estimate"] == 0
+            continue
         assert same(values["Pos_Estimate"], device["turns"]) and same(values["Vel_Estimate"], device["rate"])
-    for found, device, values in reports(dump, databases, "odrive", 6, firmware):
-        assert found == "Heartbeat"
+    for device, values in reports(dump, databases, "odrive", "Heartbeat", firmware):
         watchdog, estop = (0x800, 0x4000) if firmware else (0x01000000, 0x02000000)
         named = device["error"] | watchdog * (device["flags"] & 1) | estop * (device["flags"] >> 1 & 1)
         assert values["Axis_State"] == {UNKNOWN: 0, READY: 8}.get(device["state"], 1)
@@ -488,5 +505,9 @@ def test_odrive_reports_are_read_by_cantools(dump, databases, firmware):
         if firmware:
             assert values["Motor_Error_Flag"] == bool(values["Axis_Error"] & 0x40)
         assert values["Trajectory_Done_Flag"] == 1
-    for found, device, values in reports(dump, databases, "odrive", 7, firmware):
-        assert found == "Get_Bus_Voltage_Current" and same(values["Bus_Voltage"], device["supply"])
+    for device, values in reports(dump, databases, "odrive", "Get_Bus_Voltage_Current", firmware):
+        assert same(values["Bus_Voltage"], device["supply"])
+    if firmware:
+        for device, values in reports(dump, databases, "odrive", "Get_Encoder_Count", firmware):
+            assert values["Shadow_Count"] == device["counts"][0]
+            assert values["Count_in_CPR"] == device["counts"][0] % 4096

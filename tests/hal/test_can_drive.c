@@ -53,6 +53,15 @@ static void begin(void)
     TEST_ASSERT_EQUAL_INT(MCT_OK, bus.ops->open(bus.context, NULL, 0, &counts, &why));
 }
 
+/* In the order of can.protocol, an ODrive of firmware 0.5 behind. */
+enum { ODRIVE_0_5 = MCT_CAN_PROTOCOL_COUNT, KINDS };
+
+static void speak(int protocol)
+{
+    scene.can_protocol = protocol == ODRIVE_0_5 ? MCT_CAN_ODRIVE : protocol;
+    scene.can_firmware = protocol == ODRIVE_0_5 ? MCT_CAN_FIRMWARE_0_5 : MCT_CAN_FIRMWARE_0_6;
+}
+
 static void hear(void)
 {
     mct_can_frame frame;
@@ -203,10 +212,43 @@ static void test_a_native_drive_gives_counts_and_motion_of_the_simulated_hal_to_
     }
 }
 
+/* The arm's drive, which is never armed, as well. A counter of the drive's has 32 bits whatever the scene's have. */
+static void test_an_odrive_0_5_gives_the_counts_of_the_sensors_to_the_bit_armed_or_not(void)
+{
+    for (int run = 0; run < 4; run++) {
+        setUp();
+        speak(ODRIVE_0_5);
+        scene.can_mode = run == 3 ? MCT_CAN_MODE_TORQUE : MCT_CAN_MODE_VOLTAGE;
+        scene.noise = run > 0 ? 1.5 : 0;
+        scene.counter_bits = run > 1 ? 10 : 32;
+        scene.can_encoder_ratio[0] = run > 1 ? -1 : 1;
+        scene.can_encoder_ratio[1] = run > 1 ? -3 : 1;
+        begin_ready();
+        for (int k = 0; k < 3000; k++) {
+            drive_on(9 * sin(0.005 * k), 1);
+            for (int i = 0; i < 2; i++) {
+                mct_can_axis *axis;
+                const uint32_t mask = scene.counter_bits == 10 ? 0x3FF : 0xFFFFFFFF;
+                TEST_ASSERT_EQUAL_UINT32((uint32_t)drive.reading.counts[i] & mask,
+                                         (uint32_t)mct_can_encoder_of(&host, i, &axis)->counts & mask);
+            }
+        }
+        TEST_ASSERT_TRUE(fabs(value(1)) > 2 * TURN);
+        TEST_ASSERT_EQUAL_INT(2, host.count);
+        for (int i = 0; i < 2; i++) {
+            TEST_ASSERT_EQUAL_INT(i == 0, drive.devices[i].has_driven);
+            TEST_ASSERT_EQUAL_UINT32(0, host.axes[i].restarts + host.axes[i].alternations);
+        }
+        /* Its estimates are heard where their speed is needed. */
+        TEST_ASSERT_EQUAL_INT(run == 3, heard_of(1 << 5 | 0x09, -1) > 0);
+        TEST_ASSERT_EQUAL_INT(0, heard_of(2 << 5 | 0x09, -1));
+    }
+}
+
 static void test_turns_of_the_others_are_the_counts_that_the_sensors_gave(void)
 {
-    for (int protocol = MCT_CAN_VESC; protocol <= MCT_CAN_ODRIVE; protocol++) {
-        scene.can_protocol = protocol;
+    for (int protocol = MCT_CAN_VESC; protocol < KINDS; protocol++) {
+        speak(protocol);
         scene.noise = 2;
         scene.counter_bits = 10;
         begin_ready();
@@ -268,8 +310,8 @@ static void test_a_held_mechanism_does_not_move_and_its_drives_talk(void)
 
 static void test_without_an_owner_it_is_let_go_when_the_motors_drive_is_ready(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
-        scene.can_protocol = protocol;
+    for (int protocol = 0; protocol < KINDS; protocol++) {
+        speak(protocol);
         begin();
         ticks(200);
         TEST_ASSERT_FALSE(drive.released);
@@ -292,8 +334,8 @@ static void test_without_an_owner_it_is_let_go_when_the_motors_drive_is_ready(vo
 
 static void test_the_watchdog_takes_the_volts_away_within_its_time(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
-        scene.can_protocol = protocol;
+    for (int protocol = 0; protocol < KINDS; protocol++) {
+        speak(protocol);
         scene.can_watchdog = 0.05;
         begin_ready();
         drive_on(5, 100);
@@ -331,30 +373,84 @@ static void test_without_a_watchdog_an_odrive_goes_on_for_ever(void)
     TEST_ASSERT_TRUE(is_driven());
 }
 
+/* It is told so; what the scene of the drive's side says counts for nothing. */
+static void test_a_native_drive_has_the_watchdog_that_it_is_told(void)
+{
+    static mct_scene other;
+    scene.can_watchdog = 0;
+    begin_ready();
+    other = scene;
+    other.can_watchdog = 0.05;
+    drive.devices[0].scene = &other;
+    drive_on(5, 1);
+    ticks(5000);
+    TEST_ASSERT_TRUE(is_driven());
+    host.axes[0].scene = &other;
+    drive_on(5, 1);
+    ticks(48);
+    TEST_ASSERT_TRUE(is_driven());
+    ticks(2);
+    TEST_ASSERT_FALSE(is_driven());
+}
+
+static void test_a_watchdog_that_a_native_drive_cannot_be_told_is_refused(void)
+{
+    static const struct {
+        double seconds;
+        int protocol;
+        const char *found;
+    } cases[] = {{0.3, MCT_CAN_NATIVE, "0.3 s"},
+                 {0.256, MCT_CAN_NATIVE, "0.256 s"},
+                 {2, MCT_CAN_NATIVE, "2 s"},
+                 {0.004, MCT_CAN_NATIVE, "0.004 s"},
+                 {1e-9, MCT_CAN_NATIVE, "1e-09 s"},
+                 {0, MCT_CAN_NATIVE, NULL},
+                 {0.005, MCT_CAN_NATIVE, NULL},
+                 {0.255, MCT_CAN_NATIVE, NULL},
+                 {0.3, MCT_CAN_VESC, NULL},
+                 {0.001, MCT_CAN_ODRIVE, NULL},
+                 {2, ODRIVE_0_5, NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        mct_message why = {""};
+        speak(cases[i].protocol);
+        scene.can_watchdog = cases[i].seconds;
+        const mct_status status = mct_can_axes_init(&host, &scene, &why);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(cases[i].found ? MCT_ERROR_UNSUITED : MCT_OK, status, why.text);
+        if (cases[i].found) {
+            char words[128] = "can.watchdog: found ";
+            strcat(words, cases[i].found);
+            strcat(words, "; allowed 0 (none), or 0.005 to 0.255 s, which a native drive can be told");
+            TEST_ASSERT_EQUAL_STRING(words, why.text);
+        }
+    }
+}
+
 static void test_any_frame_to_its_axis_feeds_the_watchdog_of_an_odrive(void)
 {
     const mct_can_frame unknown = {.id = 1 << 5 | 0x1F};
     const mct_can_frame foreign = {.id = 3 << 5 | 0x1F};
-    scene.can_protocol = MCT_CAN_ODRIVE;
-    scene.can_watchdog = 0.05;
-    begin_ready();
-    drive_on(5, 1);
-    for (int i = 0; i < 500; i++) {
-        send(&unknown);
-        tick();
+    for (int protocol = MCT_CAN_ODRIVE; protocol < KINDS; protocol++) {
+        speak(protocol);
+        scene.can_watchdog = 0.05;
+        begin_ready();
+        drive_on(5, 1);
+        for (int i = 0; i < 500; i++) {
+            send(&unknown);
+            tick();
+        }
+        TEST_ASSERT_TRUE(is_driven());
+        for (int i = 0; i < 100; i++) {
+            send(&foreign);
+            tick();
+        }
+        TEST_ASSERT_FALSE(is_driven());
     }
-    TEST_ASSERT_TRUE(is_driven());
-    for (int i = 0; i < 100; i++) {
-        send(&foreign);
-        tick();
-    }
-    TEST_ASSERT_FALSE(is_driven());
 }
 
 static void test_what_stops_a_native_motor_shorts_it_and_what_stops_the_others_lets_it_run_free(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
-        scene.can_protocol = protocol;
+    for (int protocol = 0; protocol < KINDS; protocol++) {
+        speak(protocol);
         scene.can_watchdog = 0.05;
         begin_ready();
         drive_on(8, 400);
@@ -375,8 +471,11 @@ static void test_what_stops_a_native_motor_shorts_it_and_what_stops_the_others_l
 
 static void test_an_emergency_stop_holds_until_it_is_cleared(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol += MCT_CAN_ODRIVE) {
-        scene.can_protocol = protocol;
+    for (int protocol = 0; protocol < KINDS; protocol++) {
+        if (protocol == MCT_CAN_VESC) {
+            continue; /* which has no word for it */
+        }
+        speak(protocol);
         begin_ready();
         drive_on(5, 100);
         stop();
@@ -547,7 +646,7 @@ static void test_the_messages_of_a_vesc_come_slower_than_their_name_in_real_time
 
 static void begin_fault(int fault, int protocol)
 {
-    scene.can_protocol = protocol;
+    speak(protocol);
     scene.can_fault = fault;
     scene.can_fault_time = 0.1;
     scene.can_fault_duration = 0.02;
@@ -681,11 +780,12 @@ static void test_reordered_frames_come_behind_those_of_the_next_tick(void)
 
 static void test_an_invalid_encoder_is_told_as_each_protocol_can(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
+    for (int protocol = 0; protocol < KINDS; protocol++) {
         const int encoders = 2;
         begin_fault(MCT_CAN_FAULT_NAN, protocol);
         run_to(200);
-        TEST_ASSERT_EQUAL_INT(protocol == MCT_CAN_VESC ? 0 : 20 * encoders, verdicts[MCT_CAN_IS_NOT_FINITE]);
+        const bool has_words = protocol == MCT_CAN_NATIVE || protocol == MCT_CAN_ODRIVE;
+        TEST_ASSERT_EQUAL_INT(has_words ? 20 * encoders : 0, verdicts[MCT_CAN_IS_NOT_FINITE]);
         TEST_ASSERT_EQUAL_UINT64(20 * encoders, drive.result.spoilt);
         TEST_ASSERT_EQUAL_UINT64(200, drive.result.driven_ticks); /* the drive itself is well */
     }
@@ -717,7 +817,7 @@ static void test_a_drive_that_says_nothing_hears_a_stop(void)
 
 static void test_a_reboot_is_dark_then_idle_with_counters_at_zero(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
+    for (int protocol = 0; protocol < KINDS; protocol++) {
         begin_fault(MCT_CAN_FAULT_REBOOT, protocol);
         run_to(100);
         const int before = heard_count;
@@ -755,7 +855,7 @@ static void test_a_reboot_is_dark_then_idle_with_counters_at_zero(void)
 
 static void test_an_emergency_stop_on_the_bus_is_one_event_that_lasts_until_it_is_cleared(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
+    for (int protocol = 0; protocol < KINDS; protocol++) {
         begin_fault(MCT_CAN_FAULT_ESTOP, protocol);
         run_to(100);
         TEST_ASSERT_TRUE(is_driven());
@@ -779,13 +879,13 @@ static void test_an_emergency_stop_on_the_bus_is_one_event_that_lasts_until_it_i
 
 static void test_an_error_stops_the_motor_and_can_be_cleared_once_it_is_over(void)
 {
-    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
+    for (int protocol = 0; protocol < KINDS; protocol++) {
         begin_fault(MCT_CAN_FAULT_ERROR, protocol);
         run_to(100);
         TEST_ASSERT_TRUE(is_driven());
         run_to(110);
         TEST_ASSERT_FALSE(is_driven());
-        if (protocol == MCT_CAN_ODRIVE) {
+        if (protocol >= MCT_CAN_ODRIVE) {
             TEST_ASSERT_FALSE(drive.devices[0].wants_ready); /* an error disarms its axis */
         }
         arm();
@@ -845,12 +945,15 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_native_drive_gives_counts_and_motion_of_the_simulated_hal_to_the_bit);
+    RUN_TEST(test_an_odrive_0_5_gives_the_counts_of_the_sensors_to_the_bit_armed_or_not);
     RUN_TEST(test_turns_of_the_others_are_the_counts_that_the_sensors_gave);
     RUN_TEST(test_a_rate_is_as_late_as_the_counts_and_whole_counts_a_second);
     RUN_TEST(test_a_held_mechanism_does_not_move_and_its_drives_talk);
     RUN_TEST(test_without_an_owner_it_is_let_go_when_the_motors_drive_is_ready);
     RUN_TEST(test_the_watchdog_takes_the_volts_away_within_its_time);
     RUN_TEST(test_without_a_watchdog_an_odrive_goes_on_for_ever);
+    RUN_TEST(test_a_native_drive_has_the_watchdog_that_it_is_told);
+    RUN_TEST(test_a_watchdog_that_a_native_drive_cannot_be_told_is_refused);
     RUN_TEST(test_any_frame_to_its_axis_feeds_the_watchdog_of_an_odrive);
     RUN_TEST(test_what_stops_a_native_motor_shorts_it_and_what_stops_the_others_lets_it_run_free);
     RUN_TEST(test_an_emergency_stop_holds_until_it_is_cleared);

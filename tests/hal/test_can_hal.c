@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "hal/socketcan/can.h"
+#include "hal/socketcan/candump.h"
 #include "hal/socketcan/drive.h"
 #include "hal/socketcan/ring.h"
 #include "mctau/loop.h"
@@ -61,7 +62,8 @@ static void start(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, prepare(), why.text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, open_hal(), why.text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(
-        MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why), why.text);
+        MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why),
+        why.text);
 }
 
 static void finish(void)
@@ -124,6 +126,7 @@ static void test_each_protocol_swings_up_and_balances(void)
         {MCT_CAN_ODRIVE, MCT_CAN_MODE_VOLTAGE, MCT_CAN_FIRMWARE_0_6},
         {MCT_CAN_ODRIVE, MCT_CAN_MODE_VOLTAGE, MCT_CAN_FIRMWARE_0_5},
         {MCT_CAN_ODRIVE, MCT_CAN_MODE_TORQUE, MCT_CAN_FIRMWARE_0_6},
+        {MCT_CAN_ODRIVE, MCT_CAN_MODE_TORQUE, MCT_CAN_FIRMWARE_0_5},
     };
     for (int system = CART_POLE; system <= REACTION_WHEEL; system++) {
         for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -189,7 +192,10 @@ static const fault_case fault_cases[] = {
     {MCT_CAN_FAULT_NAN, "nan", {FAULT(SENSOR_INVALID), FAULT(SENSOR_STALE), FAULT(SENSOR_INVALID)}, 6},
     {MCT_CAN_FAULT_SILENCE, "silence", {FAULT(SENSOR_STALE), FAULT(SENSOR_STALE), FAULT(SENSOR_STALE)}, 6},
     {MCT_CAN_FAULT_REBOOT, "reboot", {FAULT(SENSOR_STALE), FAULT(SENSOR_STALE), FAULT(SENSOR_STALE)}, 6},
-    {MCT_CAN_FAULT_ESTOP, "estop", {FAULT(ESTOP) | FAULT(DRIVE), FAULT(NOT_READY), FAULT(DRIVE) | FAULT(NOT_READY)}, 6},
+    {MCT_CAN_FAULT_ESTOP,
+     "estop",
+     {FAULT(ESTOP) | FAULT(DRIVE), FAULT(NOT_READY), FAULT(DRIVE) | FAULT(NOT_READY)},
+     6},
     {MCT_CAN_FAULT_ERROR, "error", {FAULT(DRIVE), FAULT(NOT_READY), FAULT(DRIVE) | FAULT(NOT_READY)}, 6},
 };
 
@@ -197,7 +203,7 @@ static char label[128];
 
 static void check_fault(const fault_case *fault, int32_t protocol, int at)
 {
-    enum { LASTS = 300, PAUSE = 500 };
+    enum { LASTS = 200, PAUSE = 500 };
     const uint32_t named = fault->named[protocol];
     /* A vesc cannot say that it has let the motor go: it shows in time or is over unnoticed. */
     const bool is_silent = protocol == MCT_CAN_VESC && named == FAULT(NOT_READY);
@@ -232,7 +238,8 @@ static void check_fault(const fault_case *fault, int32_t protocol, int at)
         TEST_ASSERT_EQUAL_HEX32_MESSAGE(0, first & ~named, label);
         TEST_ASSERT_TRUE_MESSAGE(driven_again >= 0 && driven_again < at + LASTS + PAUSE + 1200, label);
     }
-    if (fault->kind != MCT_CAN_FAULT_REBOOT) { /* that one forgets where it is, and nobody has brought it home */
+    if (fault->kind !=
+        MCT_CAN_FAULT_REBOOT) { /* that one forgets where it is, and nobody has brought it home */
         TEST_ASSERT_EQUAL_HEX32_MESSAGE(0, loop.record.faults, label);
         TEST_ASSERT_TRUE_MESSAGE(angle() < 0.035, label);
     }
@@ -281,7 +288,7 @@ static void test_a_link_that_comes_back_carries_no_stale_command(void)
             for (int k = 0; k < LAST_TICK; k++) {
                 if (k == SWING_UP) {
                     bus.state = states[i];
-                } else if (k == SWING_UP + 500) {
+                } else if (k == SWING_UP + 200) {
                     bus.state = MCT_CAN_UP;
                 } else if (k == SWING_UP + 1000) {
                     mct_loop_rearm(&loop);
@@ -300,6 +307,22 @@ static void test_a_link_that_comes_back_carries_no_stale_command(void)
             TEST_ASSERT_TRUE_MESSAGE(angle() < 0.035, label);
             finish();
         }
+    }
+}
+
+/* After 128 commands a newer one looks older to a native drive: to cease is heeded all the same. */
+static void test_a_stop_that_was_lost_with_the_link_is_heeded_when_the_link_is_back(void)
+{
+    for (int outage = 20; outage < 240; outage += 20) {
+        scene.can_watchdog = 0.25;
+        start();
+        for (int k = 0; k < SWING_UP + outage + 300; k++) {
+            bus.state = k >= SWING_UP && k < SWING_UP + outage ? MCT_CAN_BUS_OFF : MCT_CAN_UP;
+            mct_loop_tick(&loop);
+            TEST_ASSERT_TRUE(k < SWING_UP + outage + 2 || drive.volts == 0);
+        }
+        TEST_ASSERT_TRUE(drive.result.stops > 0);
+        finish();
     }
 }
 
@@ -324,6 +347,25 @@ static void test_after_a_drives_restart_a_mechanism_brought_home_swings_up_again
     finish();
 }
 
+/* It never says that it has restarted; after half a second without a position nobody knows. */
+static void test_a_vesc_that_comes_back_after_a_silence_is_taken_for_restarted(void)
+{
+    enum { SILENT = 500 };
+    scene.can_protocol = MCT_CAN_VESC;
+    scene.can_fault = MCT_CAN_FAULT_SILENCE;
+    scene.can_fault_time = 3;
+    scene.can_fault_duration = SILENT * scene.dt;
+    start();
+    for (int k = 0; k < SWING_UP + SILENT + 10; k++) {
+        mct_loop_tick(&loop);
+        TEST_ASSERT_TRUE(k < SWING_UP + 6 || !drive.powered || drive.volts == 0);
+        TEST_ASSERT_TRUE(k > SWING_UP + SILENT - 2 || !(loop.record.faults & FAULT(RESTARTED)));
+    }
+    TEST_ASSERT_TRUE(loop.record.faults & FAULT(RESTARTED));
+    TEST_ASSERT_EQUAL_UINT64(2, can.counts.values[MCT_CAN_COUNT_DRIVE_RESTARTS]); /* of wheel and arm */
+    finish();
+}
+
 static void test_faults_are_cleared_by_themselves_where_the_scene_asks_for_it(void)
 {
     scene.rearm_after = 0.5;
@@ -337,6 +379,89 @@ static void test_faults_are_cleared_by_themselves_where_the_scene_asks_for_it(vo
     TEST_ASSERT_EQUAL_HEX32(0, loop.record.faults);
     TEST_ASSERT_TRUE(angle() < 0.035);
     finish();
+}
+
+/* --- a recorded bus --- */
+
+/* The host's end of the bus, with all that it carries written down as candump does. */
+static struct {
+    char text[1 << 20];
+    size_t length;
+    mct_can_transport_ops ops;
+    mct_can_transport end;
+} tape;
+
+static void write_down(const mct_can_frame *frame)
+{
+    const long long us = bus.now_us;
+    char *at = tape.text + tape.length;
+    size_t left = sizeof tape.text - tape.length;
+    int used = snprintf(at, left, "(%lld.%06lld) can0 %0*X#", 1000 + us / 1000000, us % 1000000,
+                        frame->extended ? 8 : 3, (unsigned)frame->id);
+    for (int i = 0; i < frame->length; i++) {
+        used += snprintf(at + used, left - (size_t)used, "%02X", frame->data[i]);
+    }
+    used += snprintf(at + used, left - (size_t)used, "\n");
+    TEST_ASSERT_TRUE((size_t)used < left);
+    tape.length += (size_t)used;
+}
+
+static bool tape_send(void *context, const mct_can_frame *frame)
+{
+    write_down(frame);
+    return tape.end.ops->send(context, frame);
+}
+
+static bool tape_receive(void *context, mct_can_frame *frame)
+{
+    const bool came = tape.end.ops->receive(context, frame);
+    if (came) {
+        write_down(frame);
+    }
+    return came;
+}
+
+static void test_a_recorded_bus_replays_the_same_commands(void)
+{
+    enum { TICKS = 4000 };
+    static mct_can_candump log;
+    static mct_real applied[TICKS];
+    for (int32_t protocol = MCT_CAN_NATIVE; protocol <= MCT_CAN_ODRIVE; protocol++) {
+        snprintf(label, sizeof label, "protocol %d", (int)protocol);
+        scene.can_protocol = protocol;
+        TEST_ASSERT_EQUAL_INT(MCT_OK, prepare());
+        tape.length = 0;
+        tape.end = mct_can_ring_end(&bus, 0);
+        tape.ops = *tape.end.ops;
+        tape.ops.send = tape_send;
+        tape.ops.receive = tape_receive;
+        can.transport.ops = &tape.ops;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, open_hal(), why.text);
+        TEST_ASSERT_EQUAL_INT(
+            MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why));
+        for (int k = 0; k < TICKS; k++) {
+            mct_loop_tick(&loop);
+            applied[k] = loop.record.applied;
+        }
+        finish();
+        const mct_can_transport recorded = mct_can_candump_transport(&log, tape.text, tape.length);
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_can_init(&can, &scene, recorded, true, &why));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, open_hal(), why.text);
+        TEST_ASSERT_EQUAL_INT(
+            MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why));
+        for (int k = 0; k < TICKS; k++) {
+            mct_loop_tick(&loop);
+            TEST_ASSERT_TRUE_MESSAGE(loop.record.applied == applied[k], label);
+        }
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(0, log.mismatches, label);
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(0, log.unmatched, label);
+        TEST_ASSERT_TRUE_MESSAGE(log.compared >= TICKS, label);
+        mct_loop_tick(&loop); /* beyond the end: zero volts, and it says why */
+        mct_loop_tick(&loop);
+        TEST_ASSERT_TRUE_MESSAGE(loop.record.faults & FAULT(LINK_DOWN), label);
+        TEST_ASSERT_TRUE_MESSAGE(loop.record.applied == 0, label);
+        finish();
+    }
 }
 
 /* --- the start --- */
@@ -390,6 +515,34 @@ static void test_the_start_names_the_message_that_is_too_slow(void)
     }
 }
 
+/* Another drive with the number of the first encoder's, a third of a turn away. */
+static void tick_two(void *context, int64_t timeout_us)
+{
+    (void)context;
+    (void)timeout_us;
+    mct_can_drive_tick(&drive);
+    mct_can_device other = drive.devices[0];
+    other.turns += 0.3;
+    for (int i = 0; i < other.protocol->message_count; i++) {
+        mct_can_frame frame;
+        if (other.protocol->messages[i].period == 0 && other.protocol->report(&other, i, &frame)) {
+            const mct_can_transport end = mct_can_ring_end(&bus, 1);
+            end.ops->send(end.context, &frame);
+        }
+    }
+    mct_can_ring_advance(&bus, 1000);
+}
+
+static void test_two_drives_with_one_number_are_refused(void)
+{
+    for (int32_t protocol = MCT_CAN_VESC; protocol <= MCT_CAN_ODRIVE; protocol++) {
+        scene.can_protocol = protocol;
+        TEST_ASSERT_EQUAL_INT(MCT_OK, prepare());
+        mct_can_ring_serve(&bus, 1, tick_two, NULL);
+        check_refused("node 1: found two drives with this number");
+    }
+}
+
 static void test_a_drive_whose_watchdog_does_not_act_is_not_driven(void)
 {
     static mct_scene without;
@@ -414,7 +567,8 @@ static void test_a_drive_that_does_not_get_ready_is_said_so(void)
     scene.can_protocol = MCT_CAN_ODRIVE;
     scene.can_fault = MCT_CAN_FAULT_DROP_COMMANDS;
     TEST_ASSERT_EQUAL_INT(MCT_OK, prepare());
-    drive.devices[0].node = 33; /* it hears and says nothing any more, its encoder's frames come from elsewhere */
+    drive.devices[0].node =
+        33; /* it hears and says nothing any more, its encoder's frames come from elsewhere */
     check_refused("has not come");
 }
 
@@ -469,10 +623,14 @@ int main(void)
     RUN_TEST(test_every_fault_ends_at_zero_volts_is_named_and_can_be_rearmed);
     RUN_TEST(test_a_controller_that_is_gone_is_stopped_by_the_drives_watchdog);
     RUN_TEST(test_a_link_that_comes_back_carries_no_stale_command);
+    RUN_TEST(test_a_stop_that_was_lost_with_the_link_is_heeded_when_the_link_is_back);
     RUN_TEST(test_after_a_drives_restart_a_mechanism_brought_home_swings_up_again);
+    RUN_TEST(test_a_vesc_that_comes_back_after_a_silence_is_taken_for_restarted);
     RUN_TEST(test_faults_are_cleared_by_themselves_where_the_scene_asks_for_it);
+    RUN_TEST(test_a_recorded_bus_replays_the_same_commands);
     RUN_TEST(test_the_start_names_the_message_that_is_missing);
     RUN_TEST(test_the_start_names_the_message_that_is_too_slow);
+    RUN_TEST(test_two_drives_with_one_number_are_refused);
     RUN_TEST(test_a_drive_whose_watchdog_does_not_act_is_not_driven);
     RUN_TEST(test_a_drive_that_does_not_get_ready_is_said_so);
     RUN_TEST(test_a_bus_that_would_be_too_full_is_refused_before_anything_is_sent);

@@ -9,6 +9,11 @@
 
 #define TICK 1000 /* us */
 
+/* In the order of can.protocol, older firmware behind. */
+enum { KINDS = 4 };
+static const mct_can_protocol *const kinds[KINDS] = {&mct_can_native, &mct_can_vesc, &mct_can_odrive,
+                                                     &mct_can_odrive_0_5};
+
 static mct_scene scene;
 static mct_can_axis axis;
 static mct_can_device device;
@@ -27,6 +32,7 @@ static void begin(const mct_can_protocol *protocol, uint8_t node)
     memset(&scene, 0, sizeof scene);
     scene.can_pole_pairs = 7;
     scene.can_watchdog = 0.1;
+    scene.dt = 1e-3;
     memset(&axis, 0, sizeof axis);
     axis.protocol = protocol;
     axis.scene = &scene;
@@ -48,6 +54,7 @@ static void begin(const mct_can_protocol *protocol, uint8_t node)
     device.roles = axis.roles;
     device.state = MCT_CAN_DRIVE_READY;
     device.supply = 12;
+    device.counts_per_turn = 4096;
 }
 
 static int message_of(const char *name, bool from_drive)
@@ -121,11 +128,24 @@ static void test_protocols_stand_in_the_order_of_the_scenes_choices(void)
     TEST_ASSERT_EQUAL_PTR(&mct_can_odrive, mct_can_protocols[MCT_CAN_ODRIVE]);
 }
 
+static void test_firmware_chooses_between_the_protocols_of_an_odrive_alone(void)
+{
+    for (int protocol = 0; protocol < MCT_CAN_PROTOCOL_COUNT; protocol++) {
+        memset(&scene, 0, sizeof scene);
+        scene.can_protocol = protocol;
+        TEST_ASSERT_EQUAL_PTR(mct_can_protocols[protocol], mct_can_protocol_of(&scene));
+        scene.can_firmware = MCT_CAN_FIRMWARE_0_5;
+        TEST_ASSERT_EQUAL_PTR(protocol == MCT_CAN_ODRIVE ? &mct_can_odrive_0_5 : mct_can_protocols[protocol],
+                              mct_can_protocol_of(&scene));
+        TEST_ASSERT_EQUAL_STRING(mct_can_protocols[protocol]->name, mct_can_protocol_of(&scene)->name);
+    }
+}
+
 /* Nodes 0 to 63, messages that go the same way. */
 static void test_no_two_messages_of_a_protocol_share_an_identifier(void)
 {
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
-        const mct_can_protocol *protocol = mct_can_protocols[p];
+    for (int p = 0; p < KINDS; p++) {
+        const mct_can_protocol *protocol = kinds[p];
         TEST_ASSERT_TRUE(protocol->message_count <= MCT_CAN_MAX_MESSAGES);
         static bool taken[2][1 << 16];
         memset(taken, 0, sizeof taken);
@@ -146,7 +166,7 @@ static void load_of(const mct_can_protocol *protocol, double bitrate, double *no
     *nominal = *stuffed = 0;
     for (int i = 0; i < protocol->message_count; i++) {
         const mct_can_message *message = &protocol->messages[i];
-        if (message->period >= 0 && !(message->of & MCT_CAN_OF_SPARE)) {
+        if (message->period >= 0 && !(message->of & (MCT_CAN_OF_SPARE | MCT_CAN_OF_TORQUE))) {
             const double period = message->period > 0 ? message->period : 1e-3;
             *nominal += mct_can_nominal_bits(protocol->extended, message->length) / period / bitrate;
             *stuffed += mct_can_stuffed_bits(protocol->extended, message->length) / period / bitrate;
@@ -167,6 +187,8 @@ static void test_frames_are_as_long_as_the_standard_says(void)
     load_of(&mct_can_odrive, 500e3, &nominal, &stuffed);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, nominal);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.54, stuffed);
+    load_of(&mct_can_odrive_0_5, 500e3, &nominal, &stuffed); /* counts in place of estimates */
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.45, nominal);
     load_of(&mct_can_odrive, 1e6, &nominal, &stuffed);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.22, nominal);
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.27, stuffed);
@@ -190,8 +212,8 @@ static void refuses(const mct_can_frame *frame, mct_can_verdict verdict)
 
 static void test_the_host_refuses_wrong_length_format_and_remote_frames(void)
 {
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
-        begin(mct_can_protocols[p], 5);
+    for (int p = 0; p < KINDS; p++) {
+        begin(kinds[p], 5);
         for (int i = 0; i < axis.protocol->message_count; i++) {
             const mct_can_message *message = &axis.protocol->messages[i];
             mct_can_frame good;
@@ -223,11 +245,11 @@ static void test_the_host_refuses_wrong_length_format_and_remote_frames(void)
 
 static void test_the_drive_refuses_wrong_length_format_and_remote_frames(void)
 {
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
-        begin(mct_can_protocols[p], 5);
+    for (int p = 0; p < KINDS; p++) {
+        begin(kinds[p], 5);
         const mct_can_frame good = commanded(3, true);
         /* An ODrive needs the float alone: its documents' examples send no padding. */
-        const int least = mct_can_protocols[p] == &mct_can_odrive ? 4 : good.length;
+        const int least = p >= MCT_CAN_ODRIVE ? 4 : good.length;
         const mct_can_device before = device;
         for (int length = 0; length <= 8; length++) {
             mct_can_frame frame = good;
@@ -256,10 +278,10 @@ static void test_the_drive_refuses_wrong_length_format_and_remote_frames(void)
 static void test_any_frame_is_survived(void)
 {
     test_random numbers = {20240517};
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
+    for (int p = 0; p < KINDS; p++) {
         for (int options = 0; options < 4; options++) {
-            begin(mct_can_protocols[p], 3);
-            scene.can_firmware = options & 1;
+            begin(kinds[p], 3);
+            axis.roles |= options & 1 ? MCT_CAN_OF_TORQUE : 0;
             scene.can_mode = options & 2 ? MCT_CAN_MODE_TORQUE : MCT_CAN_MODE_VOLTAGE;
             axis.encoders[0].counts_per_turn = -1e9;
             int64_t time_us = 0;
@@ -283,7 +305,11 @@ static void test_any_frame_is_survived(void)
                 obey(&frame);
                 TEST_ASSERT_TRUE(isfinite(axis.rate) && isfinite(axis.bus_voltage));
                 TEST_ASSERT_TRUE(isfinite(axis.encoders[0].turns) && isfinite(device.value));
+                TEST_ASSERT_TRUE(isfinite(axis.change) && isfinite(axis.encoders[0].fastest));
                 device.turns = device.value * 1e20;
+                device.counts[0] = (int32_t)(uint32_t)bits;
+                device.counts_per_turn = (int32_t)(bits >> 33);
+                device.has_driven = true;
                 device.rate = axis.rate * 1e30;
                 device.amperes = device.volts = device.temperature = -device.turns;
                 device.supply = axis.bus_voltage;
@@ -299,10 +325,10 @@ static void test_any_frame_is_survived(void)
 static void test_a_command_that_is_not_finite_or_disabled_asks_for_nothing(void)
 {
     const double values[] = {NAN, INFINITY, -INFINITY, 5};
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
+    for (int p = 0; p < KINDS; p++) {
         for (int mode = MCT_CAN_MODE_VOLTAGE; mode <= MCT_CAN_MODE_TORQUE; mode++) {
             for (int i = 0; i < 4; i++) {
-                begin(mct_can_protocols[p], 1);
+                begin(kinds[p], 1);
                 scene.can_mode = mode;
                 axis.rate = 3;
                 TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_COMMAND, order(values[i], i < 3));
@@ -315,8 +341,8 @@ static void test_a_command_that_is_not_finite_or_disabled_asks_for_nothing(void)
 static void test_an_axis_without_a_motor_is_never_powered(void)
 {
     mct_can_frame frames[MCT_CAN_MAX_BURST];
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
-        begin(mct_can_protocols[p], 1);
+    for (int p = 0; p < KINDS; p++) {
+        begin(kinds[p], 1);
         axis.roles = MCT_CAN_OF_ENCODER;
         axis.state = MCT_CAN_DRIVE_READY;
         const int count = axis.protocol->arm(&axis, frames);
@@ -335,8 +361,8 @@ static void test_an_axis_without_a_motor_is_never_powered(void)
 static void test_armed_then_stopped_a_drive_is_ready_then_at_zero(void)
 {
     mct_can_frame frames[MCT_CAN_MAX_BURST];
-    for (int p = 0; p < MCT_CAN_PROTOCOL_COUNT; p++) {
-        begin(mct_can_protocols[p], 1);
+    for (int p = 0; p < KINDS; p++) {
+        begin(kinds[p], 1);
         int count = axis.protocol->arm(&axis, frames);
         for (int i = 0; i < count; i++) {
             obey(&frames[i]);
@@ -467,7 +493,8 @@ static void test_native_timeout_is_within_what_the_frame_holds(void)
     static const struct {
         double seconds;
         int milliseconds;
-    } cases[] = {{0.1, 100}, {0.005, 5}, {0.001, 5}, {0.255, 255}, {2, 255}, {0.0997, 100}};
+    } cases[] = {{0.1, 100}, {0.005, 5},    {0.001, 5}, {0.255, 255},
+                 {2, 255},   {0.0997, 100}, {0, 0},     {1e-4, 5}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         begin(&mct_can_native, 1);
         scene.can_watchdog = cases[i].seconds;
@@ -475,6 +502,21 @@ static void test_native_timeout_is_within_what_the_frame_holds(void)
         TEST_ASSERT_EQUAL_UINT8(cases[i].milliseconds, frame.data[6]);
         TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_COMMAND, obey(&frame));
         TEST_ASSERT_EQUAL_INT(cases[i].milliseconds, device.watchdog_ms);
+    }
+}
+
+/* What no host sends; layout by hand: byte 6. */
+static void test_native_drive_is_told_no_watchdog_by_zero_and_five_milliseconds_at_least(void)
+{
+    for (int timeout = 0; timeout < 256; timeout++) {
+        begin(&mct_can_native, 1);
+        mct_can_frame frame = commanded(5, true);
+        frame.data[6] = (uint8_t)timeout;
+        uint8_t bytes[9] = {(uint8_t)frame.id, (uint8_t)(frame.id >> 8)};
+        memcpy(bytes + 2, frame.data, 7);
+        frame.data[7] = crc_by_table(bytes, 9);
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_COMMAND, obey(&frame));
+        TEST_ASSERT_EQUAL_UINT32(timeout > 0 && timeout < 5 ? 5 : timeout, device.watchdog_ms);
     }
 }
 
@@ -495,6 +537,19 @@ static void test_native_drive_takes_newer_commands_only(void)
         TEST_ASSERT_EQUAL_UINT32(2 * (k + 1), device.old_commands);
     }
     TEST_ASSERT_EQUAL_UINT32(701, device.commands);
+}
+
+/* After 128 lost commands the next one looks older. */
+static void test_native_drive_ceases_whatever_the_sequence(void)
+{
+    begin(&mct_can_native, 1);
+    for (int lost = 1; lost < 256; lost++) {
+        TEST_ASSERT_TRUE(order(5, true) == MCT_CAN_IS_COMMAND && device.value == 5);
+        axis.sequence = (uint8_t)(axis.sequence + lost);
+        const mct_can_verdict verdict = order(0, false);
+        TEST_ASSERT_EQUAL_INT(lost == 255 ? MCT_CAN_IS_REPEATED : MCT_CAN_IS_COMMAND, verdict);
+        TEST_ASSERT_TRUE(lost == 255 || device.value == 0);
+    }
 }
 
 static void test_native_drive_takes_any_sequence_after_a_gap_or_with_a_clear(void)
@@ -701,8 +756,8 @@ static void test_an_emergency_stop_of_anybody_is_heard_at_both_ends_whatever_its
     static const struct {
         const mct_can_protocol *protocol;
         uint32_t id;
-    } cases[] = {{&mct_can_native, 0x011}, {&mct_can_odrive, 0x022}};
-    for (int i = 0; i < 2; i++) {
+    } cases[] = {{&mct_can_native, 0x011}, {&mct_can_odrive, 0x022}, {&mct_can_odrive_0_5, 0x022}};
+    for (int i = 0; i < 3; i++) {
         for (int length = 0; length <= 8; length++) {
             begin(cases[i].protocol, 1);
             order(3, true);
@@ -849,6 +904,38 @@ static void test_vesc_encoder_that_moves_between_statuses_is_not_frozen(void)
     }
 }
 
+/* It never says so: at the first message nothing is known, after a silence nothing is known any more. */
+static void test_vesc_position_that_comes_again_after_a_silence_is_of_another_start(void)
+{
+    begin(&mct_can_vesc, 1);
+    device.turns = 0.3;
+    int64_t now = 3600 * (int64_t)1000000;
+    static const struct {
+        int64_t later;
+        uint32_t restarts;
+    } cases[] = {
+        {0, 0}, {TICK, 0},        {250 * TICK, 0}, {250 * TICK + 1, 1}, {TICK, 1},
+        {0, 1}, {-400 * TICK, 1}, {100 * TICK, 1}, {5000 * TICK, 2},    {3600 * (int64_t)1000000, 3}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        now += cases[i].later;
+        tell("STATUS", now); /* says nothing of the position */
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("STATUS_4", now));
+        TEST_ASSERT_EQUAL_UINT32(cases[i].restarts, axis.restarts);
+    }
+    /* What is refused is as good as silence. */
+    device.rate = 5;
+    tell("STATUS", now);
+    tell("STATUS", now);
+    tell("STATUS", now);
+    for (int k = 0; k <= 260; k++) {
+        const mct_can_frame frame = reported("STATUS_4", now += TICK);
+        refuses(&frame, MCT_CAN_IS_REPEATED);
+    }
+    device.turns = 0.4;
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("STATUS_4", now));
+    TEST_ASSERT_EQUAL_UINT32(4, axis.restarts);
+}
+
 /* It never says so, but one that is told 0.1 and more fifty times in a row and shows no duty does not obey. */
 static void test_vesc_that_shows_no_duty_while_told_a_large_one_is_not_ready(void)
 {
@@ -914,8 +1001,9 @@ static void test_odrive_vectors_of_its_document(void)
     assert_bytes("\x01\0\0\0\x01\0\0", &frames[2]);
     TEST_ASSERT_EQUAL_HEX32(0x067, frames[3].id);
     assert_bytes("\x08\0\0\0\0\0\0", &frames[3]);
-    scene.can_firmware = MCT_CAN_FIRMWARE_0_5;
+    begin(&mct_can_odrive_0_5, 3);
     axis.protocol->arm(&axis, frames);
+    TEST_ASSERT_EQUAL_HEX32(0x078, frames[1].id);
     TEST_ASSERT_EQUAL_UINT8(0, frames[1].length);
     TEST_ASSERT_EQUAL_INT(3, axis.protocol->stop(&axis, frames));
     TEST_ASSERT_EQUAL_HEX32(0x06E, frames[0].id);
@@ -948,6 +1036,11 @@ static void test_odrive_torque_is_that_of_the_armature(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, -0.2, device.value);
     order(-1e30, true); /* no more than the supply */
     TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.25, device.value);
+    device.rate = 1e30; /* a speed that cannot be: no more than twice the supply */
+    tell("Get_Encoder_Estimates", 0);
+    order(0, true);
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-6, -2 * axis.motor.supply / axis.motor.resistance * axis.motor.torque_per_ampere, device.value);
     axis.motor.resistance = 0;
     order(6, true);
     TEST_ASSERT_TRUE(device.value == 0);
@@ -1039,8 +1132,7 @@ static void test_odrive_estimate_that_stands_while_the_motor_turns_is_a_repetiti
 static void test_odrive_heartbeat_tells_state_and_errors_of_both_firmwares(void)
 {
     for (int firmware = 0; firmware < 2; firmware++) {
-        begin(&mct_can_odrive, 1);
-        scene.can_firmware = firmware;
+        begin(firmware == MCT_CAN_FIRMWARE_0_5 ? &mct_can_odrive_0_5 : &mct_can_odrive, 1);
         TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_STATE, tell("Heartbeat", 0));
         TEST_ASSERT_EQUAL_INT(MCT_CAN_DRIVE_READY, axis.state);
         TEST_ASSERT_EQUAL_UINT32(0, axis.error);
@@ -1062,8 +1154,7 @@ static void test_odrive_heartbeat_tells_state_and_errors_of_both_firmwares(void)
         TEST_ASSERT_TRUE(axis.error != 0);
     }
     /* 0.5: errors of motor, encoder and controller are flags; a trajectory done (bit 63) is none. */
-    begin(&mct_can_odrive, 1);
-    scene.can_firmware = MCT_CAN_FIRMWARE_0_5;
+    begin(&mct_can_odrive_0_5, 1);
     mct_can_frame frame = frame_of(0x021, false, 8, "\0\0\0\0\x08\0\0\x80");
     hear(&frame);
     TEST_ASSERT_EQUAL_INT(MCT_CAN_DRIVE_READY, axis.state);
@@ -1075,9 +1166,9 @@ static void test_odrive_heartbeat_tells_state_and_errors_of_both_firmwares(void)
     }
 }
 
-static void test_odrive_that_leaves_closed_loop_without_an_error_has_restarted(void)
+static void check_leaving(const mct_can_protocol *protocol)
 {
-    begin(&mct_can_odrive, 1);
+    begin(protocol, 1);
     tell("Heartbeat", 0);
     mct_can_frame frames[MCT_CAN_MAX_BURST];
     axis.protocol->arm(&axis, frames); /* asking again forgets nothing of it */
@@ -1103,6 +1194,12 @@ static void test_odrive_that_leaves_closed_loop_without_an_error_has_restarted(v
     device.error = 1;
     tell("Heartbeat", 0);
     TEST_ASSERT_EQUAL_UINT32(2, axis.restarts);
+}
+
+static void test_odrive_that_leaves_closed_loop_without_an_error_has_restarted(void)
+{
+    check_leaving(&mct_can_odrive);
+    check_leaving(&mct_can_odrive_0_5);
 }
 
 /* Told by position and heartbeat in either order, one restart is one. */
@@ -1136,10 +1233,281 @@ static void test_odrive_position_that_moves_further_than_its_speed_allows_is_a_r
     TEST_ASSERT_EQUAL_UINT32(0, axis.restarts);
 }
 
+/* --- odrive 0.5 --- */
+
+/* node 1, 0x0A: 0x12345678 and -2. */
+static void test_odrive_0_5_count_of_the_document(void)
+{
+    begin(&mct_can_odrive_0_5, 1);
+    mct_can_frame frame = frame_of(0x02A, false, 8, "\x78\x56\x34\x12\x00\x08\0");
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, hear(&frame));
+    TEST_ASSERT_EQUAL_INT32(0x12345678, axis.encoders[0].counts);
+    begin(&mct_can_odrive_0_5, 1);
+    axis.encoders[0].counts_per_turn = -4096;
+    frame = frame_of(0x02A, false, 8, "\xFE\xFF\xFF\xFF\xFE\x0F\0");
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, hear(&frame));
+    TEST_ASSERT_EQUAL_INT32(2, axis.encoders[0].counts);
+    device.counts[0] = -2;
+    frame = reported("Get_Encoder_Count", 0);
+    TEST_ASSERT_EQUAL_HEX32(0x02A, frame.id);
+    assert_bytes("\xFE\xFF\xFF\xFF\xFE\x0F\0", &frame); /* -2 is 4094 within the turn */
+    /* 0.6 has no such message. */
+    begin(&mct_can_odrive, 1);
+    refuses(&frame, MCT_CAN_IS_FOREIGN);
+}
+
+/* All of 32 bits, in integers; whatever the ratio, of which the sign is used. */
+static void test_odrive_0_5_counts_are_the_drives_or_their_opposite_over_the_counters_end(void)
+{
+    const double counts_per_turn[] = {4096, -4096, 8192.5, -1e-3};
+    for (int i = 0; i < 4; i++) {
+        begin(&mct_can_odrive_0_5, 1);
+        axis.encoders[0].counts_per_turn = counts_per_turn[i];
+        uint32_t counts = 0x7FFFFF00;
+        for (int k = 0; k < 600; k++) {
+            counts += i < 3 ? 3 : 0;
+            device.counts[0] = (int32_t)counts;
+            TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", k * TICK));
+            TEST_ASSERT_EQUAL_HEX32(i % 2 ? 0u - counts : counts, (uint32_t)axis.encoders[0].counts);
+        }
+        TEST_ASSERT_EQUAL_UINT32(0, axis.restarts); /* the counter's end is no jump */
+        TEST_ASSERT_EQUAL_UINT32(600, axis.encoders[0].updates);
+    }
+}
+
+/* get_encoder_estimates_callback: the controller has no source of a position until it is in closed loop. */
+static void test_odrive_0_5_that_was_never_armed_counts_though_its_estimates_stand(void)
+{
+    begin(&mct_can_odrive_0_5, 1);
+    device.turns = 0.5;
+    device.rate = 3;
+    for (int k = 0; k < 100; k++) {
+        const mct_can_frame frame = reported("Get_Encoder_Estimates", k * TICK);
+        assert_bytes("\0\0\0\0\0\0\0", &frame);
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_STATE, hear(&frame));
+        device.counts[0] = 12 * k;
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", k * TICK));
+        TEST_ASSERT_EQUAL_INT32(12 * k, axis.encoders[0].counts);
+    }
+    TEST_ASSERT_EQUAL_UINT32(100, axis.encoders[0].updates);
+    TEST_ASSERT_EQUAL_UINT32(0, axis.restarts);
+    device.has_driven = true;
+    mct_can_frame frame = reported("Get_Encoder_Estimates", 100 * TICK);
+    assert_bytes("\0\0\0\x3F\0\0\x40\x40", &frame);
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_STATE, hear(&frame));
+    TEST_ASSERT_TRUE(axis.rate == 3);
+    TEST_ASSERT_EQUAL_INT32(12 * 99, axis.encoders[0].counts);
+    /* It has no words for an encoder that is lost: no position, and 0 for its speed. */
+    device.encoder_invalid = true;
+    TEST_ASSERT_FALSE(device.protocol->report(&device, message_of("Get_Encoder_Count", true), &frame));
+    frame = reported("Get_Encoder_Estimates", 100 * TICK);
+    assert_bytes("\0\0\0\0\0\0\0", &frame);
+    frame = frame_of(0x029, false, 8, "\0\0\0\0\0\0\xC0");
+    frame.data[7] = 0x7F; /* a speed that is not finite */
+    refuses(&frame, MCT_CAN_IS_NOT_FINITE);
+    frame = frame_of(0x029, false, 8, "\0\0\xC0\x7F\0\0\0"); /* nor is the position, though it is not used */
+    refuses(&frame, MCT_CAN_IS_NOT_FINITE);
+}
+
+static void test_odrive_0_5_torque_needs_a_speed_of_the_same_time(void)
+{
+    begin(&mct_can_odrive_0_5, 1);
+    scene.can_mode = MCT_CAN_MODE_TORQUE;
+    axis.roles |= MCT_CAN_OF_TORQUE;
+    device.has_driven = true;
+    device.rate = 8;
+    int64_t now = 1000000;
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_STATE, tell("Get_Encoder_Count", now));
+    TEST_ASSERT_EQUAL_UINT32(0, axis.encoders[0].updates);
+    tell("Get_Encoder_Estimates", now);
+    order(6, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.1, device.value); /* as in 0.6 */
+    for (int k = 0; k < 20; k++) {                      /* 3 ticks, and 5 ms that a stamp may be late */
+        device.counts[0] += 33;
+        TEST_ASSERT_EQUAL_INT(k <= 8 ? MCT_CAN_IS_FEEDBACK : MCT_CAN_IS_STATE,
+                              tell("Get_Encoder_Count", now + k * TICK));
+    }
+    TEST_ASSERT_EQUAL_UINT32(9, axis.encoders[0].updates);
+    tell("Get_Encoder_Estimates", now + 20 * TICK);
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", now + 20 * TICK));
+    TEST_ASSERT_EQUAL_UINT32(0, axis.restarts);
+}
+
+static void test_odrive_0_5_count_that_stands_is_a_repetition_only_while_the_drive_tells_a_speed(void)
+{
+    begin(&mct_can_odrive_0_5, 1);
+    device.has_driven = true;
+    for (int k = 0; k < 50; k++) { /* no speed is told: it may have been stopped */
+        device.counts[0] = k < 10 ? 30 * k : 300;
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", k * TICK));
+    }
+    device.rate = 5; /* 20 counts a tick */
+    tell("Get_Encoder_Estimates", 50 * TICK);
+    mct_can_frame frame = reported("Get_Encoder_Count", 50 * TICK);
+    refuses(&frame, MCT_CAN_IS_REPEATED);
+    device.rate = 0.2; /* less than a count a tick */
+    tell("Get_Encoder_Estimates", 51 * TICK);
+    frame.time_us = 51 * TICK;
+    TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, hear(&frame));
+}
+
+/* Told by count and heartbeat in either order, one restart is one. */
+static void test_odrive_0_5_count_that_jumps_is_a_restart(void)
+{
+    for (int beat_first = 0; beat_first < 2; beat_first++) {
+        begin(&mct_can_odrive_0_5, 1);
+        tell("Heartbeat", 0);
+        for (int k = 0; k <= 20; k++) {
+            device.counts[0] = 1600 + 4 * k;
+            TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", k * TICK));
+        }
+        device.state = MCT_CAN_DRIVE_IDLE;
+        device.counts[0] = 0;
+        if (beat_first) {
+            tell("Heartbeat", 60 * TICK);
+        }
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", 61 * TICK));
+        tell("Heartbeat", 62 * TICK);
+        TEST_ASSERT_EQUAL_UINT32(1, axis.restarts);
+        TEST_ASSERT_EQUAL_INT32(0, axis.encoders[0].counts); /* it begins anew */
+        for (int k = 1; k < 50; k++) {                       /* on the way at 25 turns/s: it goes on */
+            device.counts[0] += 100;
+            TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", (61 + k) * TICK));
+        }
+        TEST_ASSERT_EQUAL_UINT32(1, axis.restarts);
+    }
+    /* One that is read only is idle all the time. */
+    begin(&mct_can_odrive_0_5, 1);
+    device.state = MCT_CAN_DRIVE_IDLE;
+    static const struct {
+        int32_t counts;
+        int later;
+        uint32_t restarts;
+    } cases[] = {{0, 0, 0}, {180, 1, 0}, {-100, 1, 1}, {-100, 1, 1}, {2000, 60, 2}, {1900, 60, 2}};
+    int64_t now = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (int k = 0; k < 20 && i > 0; k++) { /* at rest */
+            tell("Get_Encoder_Count", now += TICK);
+        }
+        now += cases[i].later * TICK;
+        device.counts[0] = cases[i].counts;
+        tell("Heartbeat", now);
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", now));
+        TEST_ASSERT_EQUAL_UINT32(cases[i].restarts, axis.restarts);
+    }
+}
+
+/* What no speed tells: an axis that is read only and has no other sign of a restart. */
+static void test_odrive_0_5_count_that_comes_again_after_a_silence_is_of_another_start(void)
+{
+    begin(&mct_can_odrive_0_5, 1);
+    int64_t now = 3600 * (int64_t)1000000;
+    static const int64_t later[] = {0, TICK, 250 * TICK, 250 * TICK + 1, TICK, 2000 * TICK};
+    static const uint32_t restarts[] = {0, 0, 0, 1, 1, 2};
+    for (int i = 0; i < 6; i++) {
+        now += later[i];
+        TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell("Get_Encoder_Count", now));
+        TEST_ASSERT_EQUAL_UINT32(restarts[i], axis.restarts);
+    }
+}
+
+/*
+ * From rest to 300 turns/s in 10 ms and to rest again, stamps late by up to 5 ms; then 100 turns/s^2 while messages
+ * are lost.
+ */
+static void test_odrive_0_5_hardest_real_motion_is_no_restart(void)
+{
+    test_random numbers = {10};
+    for (int run = 0; run < 200; run++) {
+        begin(&mct_can_odrive_0_5, 1);
+        double rate = 0, turns = 0;
+        for (int k = 0; k < 300; k++) {
+            rate += k >= 5 && k < 15 ? 30 : k >= 200 && k < 210 ? -30 : 0;
+            turns += rate * 1e-3;
+            device.counts[0] = (int32_t)floor(turns * 4096);
+            tell("Get_Encoder_Count", k * TICK + (int64_t)random_in(&numbers, 0, 5000));
+        }
+        TEST_ASSERT_EQUAL_UINT32(0, axis.restarts);
+        const int gap = (int)random_in(&numbers, 1, 245);
+        device.counts[0] += (int32_t)(0.5 * 100 * 1e-6 * gap * gap * 4096);
+        tell("Get_Encoder_Count", (300 + gap) * TICK);
+        TEST_ASSERT_EQUAL_UINT32(0, axis.restarts);
+    }
+}
+
+/* --- two drives under one number --- */
+
+static const char *position_of(const mct_can_protocol *protocol)
+{
+    return protocol == &mct_can_vesc     ? "STATUS_4"
+           : protocol == &mct_can_odrive ? "Get_Encoder_Estimates"
+                                         : "Get_Encoder_Count";
+}
+
+static mct_can_verdict tell_turns(double turns, int64_t time_us)
+{
+    device.turns = turns;
+    device.counts[0] = (int32_t)floor(turns * 4096);
+    return tell(position_of(device.protocol), time_us);
+}
+
+/* Whatever lies between them, beyond 1/64 turn: also half a turn, of which a vesc does not know the way. */
+static void test_two_drives_with_one_number_are_seen_by_their_alternating_positions(void)
+{
+    static const double apart[] = {0.02, -0.02, 0.3, 0.49, 0.5, 0.51, -0.9, 0.97};
+    for (int p = MCT_CAN_VESC; p < KINDS; p++) {
+        for (size_t i = 0; i < sizeof apart / sizeof apart[0]; i++) {
+            begin(kinds[p], 1);
+            for (int k = 0; k < 8; k++) {
+                TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_FEEDBACK, tell_turns(k % 2 * apart[i], k * TICK));
+                TEST_ASSERT_EQUAL_UINT32(k < 2 ? 0 : k - 1, axis.alternations);
+            }
+            /* One of them now and then comes in ahead of the other. */
+            for (int k = 0; k < 20; k++) {
+                tell_turns(k / 2 % 2 ? apart[i] : 0, k * TICK);
+                tell_turns(k / 2 % 2 ? 0 : apart[i], k * TICK);
+            }
+            TEST_ASSERT_TRUE(axis.alternations >= 6 + 19);
+        }
+    }
+}
+
+/*
+ * Standing with noise; by hand, shaken 20 times a second by a quarter of a turn; set going and stopped as hard as
+ * can be; a jump, as of a restart; slow messages.
+ */
+static void test_one_drive_never_seems_to_be_two(void)
+{
+    test_random numbers = {11};
+    for (int p = MCT_CAN_VESC; p < KINDS; p++) {
+        for (int motion = 0; motion < 5; motion++) {
+            begin(kinds[p], 1);
+            device.has_driven = true;
+            double rate = 0, turns = 0;
+            for (int k = 0; k < 3000; k++) {
+                const double t = k * 1e-3;
+                const double before = turns;
+                rate += motion == 2 ? (k % 40 < 10 ? 30 : k % 40 >= 20 && k % 40 < 30 ? -30 : 0) : 0;
+                turns = motion == 0   ? 0.4 + random_in(&numbers, -0.005, 0.005)
+                        : motion == 1 ? 0.25 * sin(125.7 * t)
+                        : motion == 2 ? turns + rate * 1e-3
+                        : motion == 3 ? (k < 1000 ? 0.2 : 0)
+                                      : 0.25 * sin(12.57 * t);
+                device.rate = (turns - before) / 1e-3;
+                if (motion < 4 || k % 10 == 0) {
+                    tell_turns(turns, k * TICK);
+                }
+            }
+            TEST_ASSERT_EQUAL_UINT32(0, axis.alternations);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_protocols_stand_in_the_order_of_the_scenes_choices);
+    RUN_TEST(test_firmware_chooses_between_the_protocols_of_an_odrive_alone);
     RUN_TEST(test_no_two_messages_of_a_protocol_share_an_identifier);
     RUN_TEST(test_frames_are_as_long_as_the_standard_says);
     RUN_TEST(test_the_host_refuses_wrong_length_format_and_remote_frames);
@@ -1154,7 +1522,9 @@ int main(void)
     RUN_TEST(test_native_carries_every_millivolt_in_the_same_bits);
     RUN_TEST(test_native_voltage_is_rounded_to_the_nearest_millivolt_and_clamped);
     RUN_TEST(test_native_timeout_is_within_what_the_frame_holds);
+    RUN_TEST(test_native_drive_is_told_no_watchdog_by_zero_and_five_milliseconds_at_least);
     RUN_TEST(test_native_drive_takes_newer_commands_only);
+    RUN_TEST(test_native_drive_ceases_whatever_the_sequence);
     RUN_TEST(test_native_drive_takes_any_sequence_after_a_gap_or_with_a_clear);
     RUN_TEST(test_native_voltage_needs_its_mode_and_its_bit);
     RUN_TEST(test_native_plain_commands_clear_nothing);
@@ -1175,6 +1545,7 @@ int main(void)
     RUN_TEST(test_vesc_position_is_unwrapped_to_counts);
     RUN_TEST(test_vesc_encoder_that_stands_from_status_to_status_while_it_turns_is_frozen);
     RUN_TEST(test_vesc_encoder_that_moves_between_statuses_is_not_frozen);
+    RUN_TEST(test_vesc_position_that_comes_again_after_a_silence_is_of_another_start);
     RUN_TEST(test_vesc_that_shows_no_duty_while_told_a_large_one_is_not_ready);
     RUN_TEST(test_vesc_disabled_has_no_current);
     RUN_TEST(test_odrive_vectors_of_its_document);
@@ -1186,5 +1557,15 @@ int main(void)
     RUN_TEST(test_odrive_heartbeat_tells_state_and_errors_of_both_firmwares);
     RUN_TEST(test_odrive_that_leaves_closed_loop_without_an_error_has_restarted);
     RUN_TEST(test_odrive_position_that_moves_further_than_its_speed_allows_is_a_restart);
+    RUN_TEST(test_odrive_0_5_count_of_the_document);
+    RUN_TEST(test_odrive_0_5_counts_are_the_drives_or_their_opposite_over_the_counters_end);
+    RUN_TEST(test_odrive_0_5_that_was_never_armed_counts_though_its_estimates_stand);
+    RUN_TEST(test_odrive_0_5_torque_needs_a_speed_of_the_same_time);
+    RUN_TEST(test_odrive_0_5_count_that_stands_is_a_repetition_only_while_the_drive_tells_a_speed);
+    RUN_TEST(test_odrive_0_5_count_that_jumps_is_a_restart);
+    RUN_TEST(test_odrive_0_5_count_that_comes_again_after_a_silence_is_of_another_start);
+    RUN_TEST(test_odrive_0_5_hardest_real_motion_is_no_restart);
+    RUN_TEST(test_two_drives_with_one_number_are_seen_by_their_alternating_positions);
+    RUN_TEST(test_one_drive_never_seems_to_be_two);
     return UNITY_END();
 }

@@ -73,12 +73,14 @@ class LabError(Exception):
 class Step:
     """One piece of a battery. name: of letters, digits, _ ; script: plain shell, in which the first failing
     command is the step's exit code; limit: [s], then the step is killed (137) and the next one follows;
-    controllers: needs can0 and can1, so the emulated machine."""
+    controllers: needs can0 and can1, so the emulated machine; clock: keeps a clock, so rather the emulated
+    machine, whose clock waits for it."""
 
     name: str
     script: str
     limit: int = STEP_SECONDS
     controllers: bool = False
+    clock: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,10 +95,11 @@ class Done:
 
 class Result:
     """What came of a battery: steps (name: Done), files (name: bytes) that the steps left in $OUT, missing
-    (name: why) of steps for which there was no machine, and the console's text."""
+    (name: why) of steps for which there was no machine, emulated (names of the steps that ran in the
+    emulated machine), and the console's text."""
 
     def __init__(self):
-        self.steps, self.files, self.missing, self.console = {}, {}, {}, ""
+        self.steps, self.files, self.missing, self.emulated, self.console = {}, {}, {}, set(), ""
 
     def __getitem__(self, name):
         if name in self.missing:
@@ -132,17 +135,15 @@ class Result:
                 self.steps[name[:-5]] = Done(int(data), out, err, round(end - begin, 2))
 
 
-def run(steps, files=None, timeout=60, counted=True):
+def run(steps, files=None, timeout=60):
     """Runs the battery: each step on this machine if it has vcan and that is enough for the step, else in the
     emulated one. Raises Unavailable only when no step could run; see Result.missing for a part.
 
     files: name in $IN -> path, or bytes. Programs are made executable and bring their shared libraries along.
     timeout: [s] for all steps, without the boot.
-    counted: False: the emulated machine's clock is this machine's. A controller then costs a tenth of the
-    time, but what happens depends on how busy this machine is: for programs that pace each other.
     """
     result = Result()
-    native = [] if native_reason() else [step for step in steps if not step.controllers]
+    native = [] if native_reason() else [step for step in steps if serves(step)]
     emulated = [step for step in steps if step not in native]
     if native:
         run_native(result, native, files or {}, timeout)
@@ -152,9 +153,15 @@ def run(steps, files=None, timeout=60, counted=True):
                 raise Unavailable(f"{reason}; nor here: {native_reason()}")
             result.missing = {step.name: f"needs can0 and can1: {reason}" for step in emulated}
         else:
-            run_emulated(result, emulated, files or {}, timeout, counted)
+            run_emulated(result, emulated, files or {}, timeout)
+            result.emulated = {step.name for step in emulated}
     result.steps = {step.name: result.steps[step.name] for step in steps if step.name in result.steps}
     return result
+
+
+def serves(step):
+    """Whether a step is for this machine, where it has vcan."""
+    return not step.controllers and (not step.clock or emulated_reason() is not None)
 
 
 def available():
@@ -261,11 +268,11 @@ def layout(steps, files):
 # Emulated
 
 
-def run_emulated(result, steps, files, timeout, counted=True):
+def run_emulated(result, steps, files, timeout):
     with tempfile.TemporaryDirectory(prefix="mctau-lab-") as folder:
         folder = pathlib.Path(folder)
         (folder / "initramfs").write_bytes(initramfs(layout(steps, files), files))
-        command = [*emulator(folder / "initramfs"), *(COUNTED if counted else ()), "-serial", "stdio", "-serial",
+        command = [*emulator(folder / "initramfs"), *COUNTED, "-serial", "stdio", "-serial",
                    f"file:{folder / 'sent'}"]
         try:
             done = subprocess.run(command, timeout=BOOT_SECONDS + timeout, stdin=subprocess.DEVNULL,

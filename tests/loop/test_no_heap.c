@@ -9,8 +9,8 @@
 #include "hal/socketcan/drive.h"
 #include "hal/socketcan/ring.h"
 #include "mctau/loop.h"
-#include "support/swing_up.h"
 #include "support/scenes.h"
+#include "support/swing_up.h"
 #include "unity.h"
 
 void setUp(void)
@@ -116,11 +116,12 @@ static void test_a_run_over_a_bus_uses_no_heap(void)
         mct_status status = mct_can_drive_init(&drive, &scene, mct_can_ring_end(&bus, 1), NULL);
         mct_can_drive_serve(&drive, &bus);
         status = status == MCT_OK ? mct_can_drive_open(&drive, NULL) : status;
-        status = status == MCT_OK ? mct_can_init(&can, &scene, mct_can_ring_end(&bus, 0), true, NULL) : status;
+        status =
+            status == MCT_OK ? mct_can_init(&can, &scene, mct_can_ring_end(&bus, 0), true, NULL) : status;
         const mct_hal hal = mct_can_hal(&can);
         status = status == MCT_OK ? hal.ops->open(hal.context, NULL) : status;
-        status = status == MCT_OK ? mct_loop_init(&loop, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL)
-                                  : status;
+        status =
+            status == MCT_OK ? mct_loop_init(&loop, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL) : status;
         for (int k = 0; k < 12000; k++) {
             mct_loop_tick(&loop);
         }

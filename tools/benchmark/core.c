@@ -191,8 +191,9 @@ static void measure_bus_ticks(const measure_effort *effort, int system, int32_t 
         mct_can_drive_serve(&self.drive, &self.bus);
         status = mct_can_drive_open(&self.drive, &why);
     }
-    status = status == MCT_OK ? mct_can_init(&self.can, &self.scene, mct_can_ring_end(&self.bus, 0), true, &why)
-                              : status;
+    status = status == MCT_OK
+                 ? mct_can_init(&self.can, &self.scene, mct_can_ring_end(&self.bus, 0), true, &why)
+                 : status;
     const mct_hal hal = mct_can_hal(&self.can);
     status = status == MCT_OK ? hal.ops->open(hal.context, &why) : status;
     status = status == MCT_OK

@@ -132,7 +132,8 @@ static void json_system(json *out, const mct_system *system)
     if (system->actuation != NULL) {
         const mct_coordinate *coordinates = system->coordinates;
         json_text(out, "driven_coordinate", coordinates[system->actuation->driven_coordinate].position.name);
-        json_text(out, "upright_coordinate", coordinates[system->actuation->upright_coordinate].position.name);
+        json_text(out, "upright_coordinate",
+                  coordinates[system->actuation->upright_coordinate].position.name);
     }
     if (system->input_without_motor != NULL) {
         json_quantity(out, "input_without_motor", system->input_without_motor);

@@ -140,7 +140,9 @@ static void print_state(const scene_file *file, const mct_result *at)
         printf("  %-18s %14.8g %s\n", at->names[i], at->state[i], at->units[i]);
     }
     printf("  %-18s %14.8g %s\n", has_motor ? "(input) voltage" : "(input)", at->input,
-           has_motor ? "V" : system->input_without_motor != NULL ? system->input_without_motor->unit : "");
+           has_motor                             ? "V"
+           : system->input_without_motor != NULL ? system->input_without_motor->unit
+                                                 : "");
 }
 
 /* M and C, with the unit that turns a column's acceleration or velocity into the row's force. */
@@ -194,9 +196,12 @@ static void print_ledger(const mct_result *at)
                   {"potential", e->potential},
                   {"magnetic", e->magnetic},
                   {"total", total(e)}},
-      power[] = {{"input", e->power_input},           {"viscous friction", e->power_viscous},
-                 {"dry friction", e->power_coulomb},  {"resistance", e->power_resistance},
-                 {"conversion", e->power_conversion}, {"moving base", e->power_base},
+      power[] = {{"input", e->power_input},
+                 {"viscous friction", e->power_viscous},
+                 {"dry friction", e->power_coulomb},
+                 {"resistance", e->power_resistance},
+                 {"conversion", e->power_conversion},
+                 {"moving base", e->power_base},
                  {"total", total_power(e)}};
     printf("\nEnergy [J]\n");
     for (size_t i = 0; i < sizeof energy / sizeof energy[0]; i++) {

@@ -37,22 +37,26 @@ const verb verb_run = {
     .text =
         "Runs a scene from beginning to end and prints what happened. SCENE is a TOML file; - reads it from "
         "stdin.\n"
-        "In lockstep, the default, it runs as fast as it can; --realtime keeps the clock and shows how well.\n"
-        "Over a CAN bus (--hal socketcan:can0) the clock is kept. After a fault the motor has zero volts; the "
+        "In lockstep, the default, it runs as fast as it can; --realtime keeps the clock and shows how "
+        "well.\n"
+        "Over a CAN bus (--hal socketcan:can0) the clock is kept. After a fault the motor has zero volts; "
+        "the "
         "signal\n"
         "SIGUSR1 clears it and arms the drives again.",
     .options = options,
-    .examples = "  mctau run scenes/reaction_wheel.toml\n"
-                "  mctau run scenes/cart_pole.toml --csv run.csv --set parameters.pole_mass=0.2\n"
-                "  mctau run scenes/cart_pole.toml --set variation.spread=0.1 --set variation.seed=7 --json\n"
-                "  mctau run scenes/reaction_wheel.toml --duration 10 --realtime --log run.lcm\n"
-                "  mctau run scenes/reaction_wheel.toml --hal socketcan:can0 --set can.protocol=odrive\n"
-                "  mctau run scenes/reaction_wheel.toml --hal ring --set can.fault=drop --set can.fault_time=10\n",
+    .examples =
+        "  mctau run scenes/reaction_wheel.toml\n"
+        "  mctau run scenes/cart_pole.toml --csv run.csv --set parameters.pole_mass=0.2\n"
+        "  mctau run scenes/cart_pole.toml --set variation.spread=0.1 --set variation.seed=7 --json\n"
+        "  mctau run scenes/reaction_wheel.toml --duration 10 --realtime --log run.lcm\n"
+        "  mctau run scenes/reaction_wheel.toml --hal socketcan:can0 --set can.protocol=odrive\n"
+        "  mctau run scenes/reaction_wheel.toml --hal ring --set can.fault=drop --set can.fault_time=10\n",
     .exit_codes = "  0    balanced: upright within 2 degrees for at least the last second; without a "
                   "controller: finished\n"
                   "  1    not balanced, a fault was latched, or the simulation diverged\n"
                   "  2    the command line or the scene is wrong\n"
-                  "  3    the bus or a drive was not as it must be; a file could not be read or written, or took not all of the run\n"
+                  "  3    the bus or a drive was not as it must be; a file could not be read or written, or "
+                  "took not all of the run\n"
                   "  130  stopped by Ctrl-C (128 + the signal's number), at zero volts\n",
     .run = run_verb,
 };

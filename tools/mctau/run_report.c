@@ -283,7 +283,8 @@ static void print_faults(const run_report *report, FILE *file)
         fputs("\nFaults: none\n", file);
     }
     if (result->rearmed > 0) {
-        fprintf(file, "  cleared and armed again %" PRIu64 " times\n", result->rearmed);
+        fprintf(file, "  armed again after faults: %" PRIu64 " time%s\n", result->rearmed,
+                result->rearmed > 1 ? "s" : "");
     }
     char limited[64];
     snprintf(limited, sizeof limited, "the voltage was at its limit of %g V", result->limit);
@@ -307,8 +308,10 @@ void print_start(const mct_can_report *can, FILE *file)
                                    : "cannot be tried over this protocol: make sure of it in the drive");
     for (int i = 0; i < can->heard_count; i++) {
         const mct_can_heard *heard = &can->heard[i];
-        fprintf(file, "  node %2d  %-28s every %8.2f ms (allowed up to %g ms)\n", heard->node,
-                heard->message->name, 1e3 * heard->period, 1e3 * heard->slowest);
+        const bool too_often = heard->message->period == 0 && heard->period < 0.7 * heard->slowest / 3;
+        fprintf(file, "  node %2d  %-28s every %8.2f ms (allowed up to %g ms)%s\n", heard->node,
+                heard->message->name, 1e3 * heard->period, 1e3 * heard->slowest,
+                too_often ? "; more than once a tick: two drives with this number?" : "");
     }
 }
 
@@ -323,8 +326,8 @@ static void print_can(const run_result *result, FILE *file)
     }
     if (result->has_recording) {
         fprintf(file,
-                "  of the commands, %" PRIu64 " stand in the log, %" PRIu64 " of them differ; %" PRIu64
-                " do not\n",
+                "  commands against the recorded ones: %" PRIu64 " found, %" PRIu64
+                " of them differ; %" PRIu64 " not found\n",
                 result->compared, result->mismatches, result->unmatched);
     }
     const mct_histogram *round_trip = &result->timing.round_trip;

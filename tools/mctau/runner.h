@@ -31,10 +31,11 @@ typedef struct {
     const char *scene_text; /* as read, with its overrides, for the log */
     const double *samples;  /* of a csv input, one a tick */
     size_t sample_count;
-    const volatile int *stop; /* set by a signal: the run ends at zero volts */
+    const volatile int *stop;  /* set by a signal: the run ends at zero volts */
     const volatile int *rearm; /* counts requests to clear faults and arm again */
-    void (*started)(const struct mct_can_report *report); /* told what the start found on a CAN bus; or NULL */
-    bool progress;            /* show progress on stderr */
+    void (*started)(
+        const struct mct_can_report *report); /* told what the start found on a CAN bus; or NULL */
+    bool progress;                            /* show progress on stderr */
 } run_options;
 
 /* Energies [J] and powers [W] at one state. */
@@ -75,7 +76,7 @@ typedef struct {
     const mct_counter *counters;
     uint64_t counts[MCT_MAX_COUNTERS];
     int counter_count;
-    bool has_recording; /* the bus is a recorded log */
+    bool has_recording;                       /* the bus is a recorded log */
     uint64_t compared, mismatches, unmatched; /* commands, against the log */
     /* real time */
     mct_timing timing;

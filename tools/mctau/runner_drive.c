@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "csv_output.h"
 #include "hal/clock.h"
@@ -235,6 +236,9 @@ static mct_status prepare(drive_run *self, mct_message *why)
         return status;
     }
     self->upright = mct_systems[scene->system]->actuation->upright_coordinate;
+    for (int i = 0; i < self->drive.device_count; i++) {
+        self->drive.devices[i].serial = (uint16_t)getpid(); /* two of them on one bus are two */
+    }
     self->reader = *plant_of(self);
     return status != MCT_OK ? status : open_csv(self, why);
 }

@@ -52,8 +52,8 @@ typedef struct {
     const mct_plant *mechanism; /* NULL where nobody knows it */
     const mct_state *plant;     /* its state */
     bool realtime;
-    int rearmed; /* requests that have been passed on */
-    uint64_t ticks;         /* of the whole run */
+    int rearmed;    /* requests that have been passed on */
+    uint64_t ticks; /* of the whole run */
     /* what the ticks have shown */
     int upright; /* index of the angle that is 0 upright */
     mct_real deviation, least_deviation, worst_deviation, worst_last_second;
@@ -323,7 +323,7 @@ static const char *argument_of(const char *hal, const char *name)
 {
     const size_t length = strlen(name);
     return strncmp(hal, name, length) == 0 && hal[length] == ':' && hal[length + 1] != '\0' ? hal + length + 1
-                                                                                          : NULL;
+                                                                                            : NULL;
 }
 
 static mct_status read_log(run *self, const char *path, size_t *length, mct_message *why)
@@ -349,7 +349,8 @@ static mct_status read_log(run *self, const char *path, size_t *length, mct_mess
     return well ? MCT_OK : MCT_ERROR_IO;
 }
 
-static mct_status use_can(run *self, mct_can_transport transport, bool lockstep, mct_hal *hal, mct_message *why)
+static mct_status use_can(run *self, mct_can_transport transport, bool lockstep, mct_hal *hal,
+                          mct_message *why)
 {
     self->realtime = !lockstep;
     self->clock = &self->can.clock;
@@ -491,15 +492,15 @@ static void fill_state(const run *self, run_result *result)
 {
     const mct_system *system = self->reader.system;
     /* What nobody simulates and nobody estimates is not known. */
-    result->states = self->plant != NULL    ? mct_state_count(system, self->reader.effects)
+    result->states = self->plant != NULL     ? mct_state_count(system, self->reader.effects)
                      : self->loop.controlled ? 2 * mct_encoder_count(system)
                                              : 0;
     for (int i = 0; i < result->states; i++) {
         const mct_field *field = mct_state_field(system, i);
         result->names[i] = field->name;
         result->units[i] = field->unit;
-        result->state[i] = self->plant != NULL ? mct_plant_value(self->mechanism, i)
-                                               : (double)self->loop.record.estimate[i];
+        result->state[i] =
+            self->plant != NULL ? mct_plant_value(self->mechanism, i) : (double)self->loop.record.estimate[i];
     }
 }
 
@@ -522,7 +523,9 @@ static void fill_can(run *self, run_result *result)
     const mct_counters counters = hal->ops->counters(hal->context);
     result->counters = counters.counters;
     result->counter_count = counters.count;
-    memcpy(result->counts, counters.values, sizeof counters.values[0] * (size_t)counters.count);
+    for (int i = 0; i < counters.count; i++) {
+        result->counts[i] = counters.values[i];
+    }
     result->has_can = hal->context == &self->can;
     result->can = self->can.report;
     result->has_recording = self->log_text != NULL;
@@ -582,8 +585,13 @@ static mct_status execute(run *self, run_result *result, mct_message *why)
         result->energy_start = runner_energies(&at);
     }
     self->started_ns = now_ns();
+    if (self->log_text != NULL) {
+        mct_message_add(why, self->scene->hal + sizeof "candump");
+        mct_message_add(why, ": ");
+    }
     const mct_status status = hal->ops->open(hal->context, why);
     if (status == MCT_OK) {
+        mct_message_clear(why);
         self->drive.held = false; /* from here on each tick moves it */
         if (hal->context == &self->can && self->options->started != NULL) {
             self->options->started(&self->can.report);

@@ -195,7 +195,7 @@ struct mct_dbc_native_drive_cmd_t {
     uint8_t enable;
 
     /**
-     * After so long without an accepted command the drive goes to zero volts by itself and holds that until a clear. 0 to 4 count as 5.
+     * After so long without an accepted command the drive goes to zero volts by itself and holds that until a clear. 0: none; 1 to 4 count as 5.
      *
      * Range: 0..255 (0..255 ms)
      * Scale: 1

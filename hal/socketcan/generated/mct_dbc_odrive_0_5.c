@@ -471,6 +471,93 @@ bool mct_dbc_odrive_0_5_get_encoder_estimates_vel_estimate_is_in_phys_range(doub
     return (true);
 }
 
+int mct_dbc_odrive_0_5_get_encoder_count_pack(
+    uint8_t *dst_p,
+    const struct mct_dbc_odrive_0_5_get_encoder_count_t *src_p,
+    size_t size)
+{
+    uint32_t count_in_cpr;
+    uint32_t shadow_count;
+
+    if (size < 8u) {
+        return (-EINVAL);
+    }
+
+    memset(&dst_p[0], 0, 8);
+
+    shadow_count = (uint32_t)src_p->shadow_count;
+    dst_p[0] |= pack_left_shift_u32(shadow_count, 0u, 0xffu);
+    dst_p[1] |= pack_right_shift_u32(shadow_count, 8u, 0xffu);
+    dst_p[2] |= pack_right_shift_u32(shadow_count, 16u, 0xffu);
+    dst_p[3] |= pack_right_shift_u32(shadow_count, 24u, 0xffu);
+    count_in_cpr = (uint32_t)src_p->count_in_cpr;
+    dst_p[4] |= pack_left_shift_u32(count_in_cpr, 0u, 0xffu);
+    dst_p[5] |= pack_right_shift_u32(count_in_cpr, 8u, 0xffu);
+    dst_p[6] |= pack_right_shift_u32(count_in_cpr, 16u, 0xffu);
+    dst_p[7] |= pack_right_shift_u32(count_in_cpr, 24u, 0xffu);
+
+    return (8);
+}
+
+int mct_dbc_odrive_0_5_get_encoder_count_unpack(
+    struct mct_dbc_odrive_0_5_get_encoder_count_t *dst_p,
+    const uint8_t *src_p,
+    size_t size)
+{
+    uint32_t count_in_cpr;
+    uint32_t shadow_count;
+
+    if (size < 8u) {
+        return (-EINVAL);
+    }
+
+    shadow_count = unpack_right_shift_u32(src_p[0], 0u, 0xffu);
+    shadow_count |= unpack_left_shift_u32(src_p[1], 8u, 0xffu);
+    shadow_count |= unpack_left_shift_u32(src_p[2], 16u, 0xffu);
+    shadow_count |= unpack_left_shift_u32(src_p[3], 24u, 0xffu);
+    dst_p->shadow_count = (int32_t)shadow_count;
+    count_in_cpr = unpack_right_shift_u32(src_p[4], 0u, 0xffu);
+    count_in_cpr |= unpack_left_shift_u32(src_p[5], 8u, 0xffu);
+    count_in_cpr |= unpack_left_shift_u32(src_p[6], 16u, 0xffu);
+    count_in_cpr |= unpack_left_shift_u32(src_p[7], 24u, 0xffu);
+    dst_p->count_in_cpr = (int32_t)count_in_cpr;
+
+    return (0);
+}
+
+int mct_dbc_odrive_0_5_get_encoder_count_init(struct mct_dbc_odrive_0_5_get_encoder_count_t *msg_p)
+{
+    if (msg_p == NULL) return -1;
+
+    memset(msg_p, 0, sizeof(struct mct_dbc_odrive_0_5_get_encoder_count_t));
+
+    return 0;
+}
+
+bool mct_dbc_odrive_0_5_get_encoder_count_shadow_count_is_in_range(int32_t value)
+{
+    (void)value;
+
+    return (true);
+}
+
+bool mct_dbc_odrive_0_5_get_encoder_count_shadow_count_is_in_phys_range(double value)
+{
+    return ((value >= -2147483648.0) && (value <= 2147483647.0));
+}
+
+bool mct_dbc_odrive_0_5_get_encoder_count_count_in_cpr_is_in_range(int32_t value)
+{
+    (void)value;
+
+    return (true);
+}
+
+bool mct_dbc_odrive_0_5_get_encoder_count_count_in_cpr_is_in_phys_range(double value)
+{
+    return ((value >= -2147483648.0) && (value <= 2147483647.0));
+}
+
 int mct_dbc_odrive_0_5_set_controller_mode_pack(
     uint8_t *dst_p,
     const struct mct_dbc_odrive_0_5_set_controller_mode_t *src_p,

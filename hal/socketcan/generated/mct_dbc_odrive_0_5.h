@@ -50,6 +50,7 @@ extern "C" {
 #define MCT_DBC_ODRIVE_0_5_GET_MOTOR_ERROR_FRAME_ID (0x23u)
 #define MCT_DBC_ODRIVE_0_5_SET_AXIS_STATE_FRAME_ID (0x27u)
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_FRAME_ID (0x29u)
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_FRAME_ID (0x2au)
 #define MCT_DBC_ODRIVE_0_5_SET_CONTROLLER_MODE_FRAME_ID (0x2bu)
 #define MCT_DBC_ODRIVE_0_5_SET_INPUT_TORQUE_FRAME_ID (0x2eu)
 #define MCT_DBC_ODRIVE_0_5_SET_LIMITS_FRAME_ID (0x2fu)
@@ -63,6 +64,7 @@ extern "C" {
 #define MCT_DBC_ODRIVE_0_5_GET_MOTOR_ERROR_LENGTH (8u)
 #define MCT_DBC_ODRIVE_0_5_SET_AXIS_STATE_LENGTH (8u)
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_LENGTH (8u)
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_LENGTH (8u)
 #define MCT_DBC_ODRIVE_0_5_SET_CONTROLLER_MODE_LENGTH (8u)
 #define MCT_DBC_ODRIVE_0_5_SET_INPUT_TORQUE_LENGTH (8u)
 #define MCT_DBC_ODRIVE_0_5_SET_LIMITS_LENGTH (8u)
@@ -76,6 +78,7 @@ extern "C" {
 #define MCT_DBC_ODRIVE_0_5_GET_MOTOR_ERROR_IS_EXTENDED (0)
 #define MCT_DBC_ODRIVE_0_5_SET_AXIS_STATE_IS_EXTENDED (0)
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_IS_EXTENDED (0)
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_IS_EXTENDED (0)
 #define MCT_DBC_ODRIVE_0_5_SET_CONTROLLER_MODE_IS_EXTENDED (0)
 #define MCT_DBC_ODRIVE_0_5_SET_INPUT_TORQUE_IS_EXTENDED (0)
 #define MCT_DBC_ODRIVE_0_5_SET_LIMITS_IS_EXTENDED (0)
@@ -86,6 +89,7 @@ extern "C" {
 /* Frame cycle times in milliseconds. */
 #define MCT_DBC_ODRIVE_0_5_HEARTBEAT_CYCLE_TIME_MS (100u)
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_CYCLE_TIME_MS (1u)
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_CYCLE_TIME_MS (1u)
 #define MCT_DBC_ODRIVE_0_5_SET_INPUT_TORQUE_CYCLE_TIME_MS (1u)
 #define MCT_DBC_ODRIVE_0_5_GET_BUS_VOLTAGE_CURRENT_CYCLE_TIME_MS (100u)
 
@@ -151,6 +155,7 @@ extern "C" {
 #define MCT_DBC_ODRIVE_0_5_GET_MOTOR_ERROR_NAME "Get_Motor_Error"
 #define MCT_DBC_ODRIVE_0_5_SET_AXIS_STATE_NAME "Set_Axis_State"
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_NAME "Get_Encoder_Estimates"
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_NAME "Get_Encoder_Count"
 #define MCT_DBC_ODRIVE_0_5_SET_CONTROLLER_MODE_NAME "Set_Controller_Mode"
 #define MCT_DBC_ODRIVE_0_5_SET_INPUT_TORQUE_NAME "Set_Input_Torque"
 #define MCT_DBC_ODRIVE_0_5_SET_LIMITS_NAME "Set_Limits"
@@ -169,6 +174,8 @@ extern "C" {
 #define MCT_DBC_ODRIVE_0_5_SET_AXIS_STATE_AXIS_REQUESTED_STATE_NAME "Axis_Requested_State"
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_POS_ESTIMATE_NAME "Pos_Estimate"
 #define MCT_DBC_ODRIVE_0_5_GET_ENCODER_ESTIMATES_VEL_ESTIMATE_NAME "Vel_Estimate"
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_SHADOW_COUNT_NAME "Shadow_Count"
+#define MCT_DBC_ODRIVE_0_5_GET_ENCODER_COUNT_COUNT_IN_CPR_NAME "Count_in_CPR"
 #define MCT_DBC_ODRIVE_0_5_SET_CONTROLLER_MODE_CONTROL_MODE_NAME "Control_Mode"
 #define MCT_DBC_ODRIVE_0_5_SET_CONTROLLER_MODE_INPUT_MODE_NAME "Input_Mode"
 #define MCT_DBC_ODRIVE_0_5_SET_INPUT_TORQUE_INPUT_TORQUE_NAME "Input_Torque"
@@ -283,7 +290,7 @@ struct mct_dbc_odrive_0_5_set_axis_state_t {
 /**
  * Signals in message Get_Encoder_Estimates.
  *
- * Each tick. A float's position has steps of 1.2e-4 rev beyond 1024 rev and 2e-3 rev beyond 16384 rev.
+ * Of the motor's axis, each tick, for its speed where torque is commanded. Both are 0 until the axis has been in CLOSED_LOOP_CONTROL.
  *
  * All signal values are as on the CAN bus.
  */
@@ -305,6 +312,33 @@ struct mct_dbc_odrive_0_5_get_encoder_estimates_t {
      * Offset: 0
      */
     float vel_estimate;
+};
+
+/**
+ * Signals in message Get_Encoder_Count.
+ *
+ * Each tick, in any state of the axis.
+ *
+ * All signal values are as on the CAN bus.
+ */
+struct mct_dbc_odrive_0_5_get_encoder_count_t {
+    /**
+     * Of the drive's encoder, over many turns; it wraps at 32 bits.
+     *
+     * Range: -2147483648..2147483647 (-2147483648..2147483647 -)
+     * Scale: 1
+     * Offset: 0
+     */
+    int32_t shadow_count;
+
+    /**
+     * Within a turn.
+     *
+     * Range: -2147483648..2147483647 (-2147483648..2147483647 -)
+     * Scale: 1
+     * Offset: 0
+     */
+    int32_t count_in_cpr;
 };
 
 /**
@@ -835,6 +869,87 @@ bool mct_dbc_odrive_0_5_get_encoder_estimates_vel_estimate_is_in_range(float val
  * @return true if in range, false otherwise.
  */
 bool mct_dbc_odrive_0_5_get_encoder_estimates_vel_estimate_is_in_phys_range(double value);
+
+/**
+ * Pack message Get_Encoder_Count.
+ *
+ * @param[out] dst_p Buffer to pack the message into.
+ * @param[in] src_p Data to pack.
+ * @param[in] size Size of dst_p.
+ *
+ * @return Size of packed data, or negative error code.
+ */
+int mct_dbc_odrive_0_5_get_encoder_count_pack(
+    uint8_t *dst_p,
+    const struct mct_dbc_odrive_0_5_get_encoder_count_t *src_p,
+    size_t size);
+
+/**
+ * Unpack message Get_Encoder_Count.
+ *
+ * @param[out] dst_p Object to unpack the message into.
+ * @param[in] src_p Message to unpack.
+ * @param[in] size Size of src_p.
+ *
+ * @return zero(0) or negative error code.
+ */
+int mct_dbc_odrive_0_5_get_encoder_count_unpack(
+    struct mct_dbc_odrive_0_5_get_encoder_count_t *dst_p,
+    const uint8_t *src_p,
+    size_t size);
+
+/**
+ * Init message fields to default values from Get_Encoder_Count.
+ *
+ * @param[in] msg_p Message to init.
+ *
+ * @return zero(0) on success or (-1) in case of nullptr argument.
+ */
+int mct_dbc_odrive_0_5_get_encoder_count_init(struct mct_dbc_odrive_0_5_get_encoder_count_t *msg_p);
+
+/**
+ * Check that given signal is in allowed range.
+ *
+ * @param[in] value Signal to check.
+ *
+ * @return true if in range, false otherwise.
+ */
+bool mct_dbc_odrive_0_5_get_encoder_count_shadow_count_is_in_range(int32_t value);
+
+/**
+ * Check that given physical value is in allowed range before encoding.
+ *
+ * Use this BEFORE calling _encode() to avoid silent integer overflow:
+ *   encode(-1.0) on a [0,100] signal wraps to 255 and passes is_in_range().
+ *   is_in_phys_range(-1.0) correctly returns false.
+ *
+ * @param[in] value Physical signal value to check.
+ *
+ * @return true if in range, false otherwise.
+ */
+bool mct_dbc_odrive_0_5_get_encoder_count_shadow_count_is_in_phys_range(double value);
+
+/**
+ * Check that given signal is in allowed range.
+ *
+ * @param[in] value Signal to check.
+ *
+ * @return true if in range, false otherwise.
+ */
+bool mct_dbc_odrive_0_5_get_encoder_count_count_in_cpr_is_in_range(int32_t value);
+
+/**
+ * Check that given physical value is in allowed range before encoding.
+ *
+ * Use this BEFORE calling _encode() to avoid silent integer overflow:
+ *   encode(-1.0) on a [0,100] signal wraps to 255 and passes is_in_range().
+ *   is_in_phys_range(-1.0) correctly returns false.
+ *
+ * @param[in] value Physical signal value to check.
+ *
+ * @return true if in range, false otherwise.
+ */
+bool mct_dbc_odrive_0_5_get_encoder_count_count_in_cpr_is_in_phys_range(double value);
 
 /**
  * Pack message Set_Controller_Mode.
