@@ -11,7 +11,9 @@ def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(res
         "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "expo": 4,
     }  # fmt: skip
     assert found["controllers"] == ["none", "swing_up_balance"]
-    assert [effect["name"] for effect in found["effects"]] == ["gravity", "viscous", "coulomb", "motor", "saturation"]
+    assert [effect["name"] for effect in found["effects"]] == [
+        "gravity", "viscous", "coulomb", "motor", "saturation", "drag", "spring", "base_motion", "centrifugal",
+        "coriolis", "euler", "stokes", "buoyancy", "forcing"]  # fmt: skip
 
 
 def test_every_parameter_and_coordinate_has_unit_range_and_a_default_within(result):

@@ -52,7 +52,7 @@ class Builds:
 
     def lines(self, configuration):
         """What the programs of both precisions print."""
-        scenes = [str(self.source / "scenes" / f"{name}.toml") for name in ("cart_pole", "reaction_wheel")]
+        scenes = [str(path) for path in sorted((self.source / "scenes").glob("*.toml")) if "_free" not in path.name]
         printed = []
         for precision in PRECISIONS:
             program = self.folder / name_of(configuration) / precision / "bits"
