@@ -55,8 +55,8 @@ enum {
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 1, "of the block"),
     [STATIC] =
-        MCT_QUANTITY("static_coefficient", "1", 0, 1e3, 0.6, "of friction at rest; at least the dynamic one"),
-    [DYNAMIC] = MCT_QUANTITY("dynamic_coefficient", "1", 0, 1e3, 0.5, "of friction in motion"),
+        MCT_QUANTITY("static_coefficient", "", 0, 1e3, 0.6, "of friction at rest; at least the dynamic one"),
+    [DYNAMIC] = MCT_QUANTITY("dynamic_coefficient", "", 0, 1e3, 0.5, "of friction in motion"),
     [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
     [SLOPE] = MCT_QUANTITY("slope", "rad", -1.57, 1.57, 0, "of the plane, upwards with the position"),
     [FORCE] = MCT_QUANTITY("force", "N", -1e9, 1e9, 0, "along the plane, constant"),

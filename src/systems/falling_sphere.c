@@ -41,7 +41,7 @@ static const mct_field parameters[PARAMETERS] = {
     [FLUID_DENSITY] = MCT_QUANTITY("fluid_density", "kg/m^3", 0, 1e5, 1260, "of the fluid"),
     [FLUID_VISCOSITY] = MCT_QUANTITY("fluid_viscosity", "Pa s", 0, 1e6, 1.42, "of the fluid, dynamic"),
     [DRAG_COEFFICIENT] =
-        MCT_QUANTITY("drag_coefficient", "1", 0, 1e3, 0.47, "of the sphere, by its cross-section"),
+        MCT_QUANTITY("drag_coefficient", "", 0, 1e3, 0.47, "of the sphere, by its cross-section"),
     [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
 };
 
