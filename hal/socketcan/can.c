@@ -530,7 +530,7 @@ static bool check_heard(mct_can *self, mct_message *why)
         if (is_paced && (heard->period > heard->slowest || heard->count < 2)) {
             add_message(why, heard);
             mct_message_add(why, " comes every ");
-            mct_message_add_number(why, 1e3 * heard->period);
+            mct_message_add_number(why, 0.01 * (double)(int64_t)(1e5 * heard->period + 0.5)); /* [ms] */
             mct_message_add(why, " ms; allowed up to ");
             mct_message_add_number(why, 1e3 * heard->slowest);
             mct_message_add(why, " ms: set its rate in the drive");

@@ -34,6 +34,7 @@ typedef struct {
     uint32_t effects;
     uint32_t counter_shift; /**< 32 - bits of the counters */
     bool started;
+    uint32_t blind_ticks; /**< without a valid reading so far */
     mct_real h;
     mct_real keep;      /**< p^2 */
     mct_real rate_gain; /**< (1 - p)^2 / h [1/s] */

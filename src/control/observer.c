@@ -8,6 +8,8 @@
 #define PI   3.141592653589793238463
 #define TURN (2 * PI)
 
+enum { LONG_GAP = 5 }; /* ticks: by then the voltage is zero */
+
 /* Within +-pi, from within +-(2 pi + pi). */
 static mct_real wrapped(mct_real angle)
 {
@@ -82,6 +84,9 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
         }
         return;
     }
+    /* After a gap the count tells where it is, but not how fast it got there: no velocity comes of it. */
+    const bool is_back = valid && observer->blind_ticks >= LONG_GAP;
+    observer->blind_ticks = valid ? 0 : observer->blind_ticks + 1;
     mct_real a[MCT_MAX_ENCODERS];
     observer->system->actuation->accelerate(observer->constants, observer->effects, observer->x, input, a);
     if (observer->gravity_slope > 0) {
@@ -106,7 +111,8 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
             if (track->turn != 0) {
                 track->travelled %= track->turn;
             }
-            const mct_real deviation = track->deviation + ((mct_real)moved * track->unit - model_moved);
+            const mct_real deviation =
+                is_back ? 0 : track->deviation + ((mct_real)moved * track->unit - model_moved);
             track->deviation = observer->keep * deviation;
             *rate += observer->rate_gain * deviation;
             observer->correction[i] = observer->rate_gain * deviation / h;

@@ -257,6 +257,25 @@ static void test_missing_readings_lose_no_count_and_keep_the_rate(void)
     TEST_ASSERT_TRUE(worst < count_error() + rounding(33));
 }
 
+/* What has moved unseen for a second: the count says where it is, not how fast it is. */
+static void test_a_jump_after_a_long_gap_moves_the_position_and_not_the_rate(void)
+{
+    static bench self;
+    const mct_scene scene = forceless(0, 32);
+    start(&self, &scene, 0);
+    for (int k = 0; k < 1000; k++) {
+        feed(&self, 0, 0);
+    }
+    for (int k = 0; k < 1000; k++) {
+        feed(&self, 0, MCT_READING_MISSING);
+    }
+    for (int k = 0; k < 100; k++) {
+        feed(&self, 1000.5, 0);
+        TEST_ASSERT_TRUE(fabs((double)self.observer.x[3]) < 1e-6);
+        TEST_ASSERT_TRUE(angle_size((double)self.observer.x[1] - 1000.5) < 3 * UNIT);
+    }
+}
+
 static void test_nothing_is_estimated_before_the_first_valid_reading(void)
 {
     static bench self;
@@ -301,6 +320,7 @@ int main(void)
     RUN_TEST(test_positions_start_where_the_scene_says_and_angles_stay_within_half_a_turn);
     RUN_TEST(test_the_very_first_estimate_of_an_angle_is_within_half_a_turn);
     RUN_TEST(test_missing_readings_lose_no_count_and_keep_the_rate);
+    RUN_TEST(test_a_jump_after_a_long_gap_moves_the_position_and_not_the_rate);
     RUN_TEST(test_nothing_is_estimated_before_the_first_valid_reading);
     RUN_TEST(test_a_position_does_not_drift_in_1e7_ticks);
     return UNITY_END();
