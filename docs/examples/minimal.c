@@ -24,7 +24,7 @@ int main(void)
     for (int tick = 0; tick < 1000; tick++) {
         mct_plant_step(&plant, 0); /* no force on the cart */
     }
-    for (int i = 0; i < mct_state_count(plant.system, plant.effects); i++) {
+    for (int i = 0; i < plant.states; i++) {
         const mct_field *field = mct_state_field(plant.system, i);
         printf("%-14s %9.6f %s\n", field->name, mct_plant_value(&plant, i), field->unit);
     }

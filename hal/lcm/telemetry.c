@@ -511,7 +511,7 @@ mct_status mct_telemetry_start(mct_telemetry *telemetry, mct_ring *ring, const m
     telemetry->counters = targets->counters;
     telemetry->coordinates = system->coordinate_count;
     telemetry->encoders = mct_encoder_count(system);
-    telemetry->states = mct_state_count(system, mct_scene_effects(scene));
+    telemetry->states = mct_state_count(scene);
     telemetry->health.period = (uint64_t)(health_period / scene->dt + 0.5);
     telemetry->health.period += telemetry->health.period == 0;
     mct_status status = encode_scene(telemetry, targets->scene_text != NULL ? targets->scene_text : "");

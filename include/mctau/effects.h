@@ -27,7 +27,8 @@ enum {
     MCT_EULER_FORCE = 1 << 11,    /**< of a rotating frame: - m domega/dt x u */
     MCT_STOKES = 1 << 12,         /**< viscous drag of a slow sphere, proportional to its velocity */
     MCT_BUOYANCY = 1 << 13,       /**< weight of the displaced fluid */
-    MCT_FORCING = 1 << 14         /**< a force that changes in time as prescribed */
+    MCT_FORCING = 1 << 14,        /**< a force that changes in time as prescribed */
+    MCT_FORCES = 1 << 15          /**< constant forces on points of the mechanism */
 };
 #define MCT_CLOCK          (MCT_BASE_MOTION | MCT_FORCING) /**< what depends on time: the phases are states */
 #define MCT_MOTOR          (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
@@ -45,7 +46,7 @@ typedef struct {
     uint32_t bits[3];           /**< mask by choice (false/true for a switch) */
 } mct_effect;
 
-#define MCT_EFFECT_COUNT 14
+#define MCT_EFFECT_COUNT 15
 /** All effects, in the order in which they are listed. */
 extern const mct_effect mct_effects[MCT_EFFECT_COUNT];
 

@@ -17,6 +17,8 @@ typedef struct {
     const mct_system *system;
     mct_kernel kernel;
     uint32_t effects; /**< as simulated, see mct_scene_effects */
+    int32_t states;
+    int32_t entries;  /**< of the state that the kernel uses: the states, and perhaps the time behind them */
     int32_t substeps; /**< steps per tick */
     mct_real bound;   /**< largest input [V]; without saturation the largest finite number */
     mct_real input;   /**< as applied over the last tick */
@@ -49,7 +51,7 @@ double mct_plant_value(const mct_plant *plant, int index);
 /** M, C, tau and all that follows, at the present state under the present input. */
 void mct_plant_evaluate(const mct_plant *plant, mct_evaluation *out);
 
-/** Sets a state from values in double, taking whole turns out of angles. */
+/** Sets a state from values in double: whole turns are taken out of angles, a quaternion gets the length 1. */
 void mct_state_set(const mct_system *system, int states, const double *values, mct_state *state);
 
 #endif

@@ -13,7 +13,7 @@
 #include "mctau/status.h"
 #include "mctau/system.h"
 
-#define MCT_MAX_LIST 64  /**< numbers in a list of a scene */
+#define MCT_MAX_LIST 128 /**< numbers in a list of a scene */
 #define MCT_MAX_TEXT 256 /**< bytes of a text in a scene, NUL included */
 
 typedef struct {
@@ -57,6 +57,7 @@ typedef struct mct_scene {
     char hal[MCT_MAX_TEXT];
     /* [parameters], [effects], [initial]: by the system's descriptor */
     double parameters[MCT_MAX_PARAMETERS];
+    mct_list lists[MCT_MAX_LISTS]; /**< of rows, one behind the other: mct_system.lists */
     uint32_t effects;
     double initial[MCT_MAX_STATES];
     /* [controller], [weights] */

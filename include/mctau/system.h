@@ -17,11 +17,12 @@
 #include "mctau/real.h"
 #include "mctau/status.h"
 
-#define MCT_MAX_COORDINATES 3                             /**< of a system with a kernel */
-#define MCT_MAX_STATES      (2 * MCT_MAX_COORDINATES + 1) /**< coordinates, rates, current */
-#define MCT_MAX_ENCODERS    2                             /**< coordinates of a system with a motor */
+#define MCT_MAX_COORDINATES 16 /**< of a chain, which has no rates; 6 of a system with rates */
+#define MCT_MAX_STATES      16 /**< of a chain; 13 of a rigid body */
+#define MCT_MAX_ENCODERS    2  /**< coordinates of a system with a motor */
 #define MCT_MAX_PARAMETERS  24
-#define MCT_MAX_PARTICLES   4
+#define MCT_MAX_PARTICLES   32 /**< as many as the Gauss engine takes */
+#define MCT_MAX_LISTS       2  /**< of rows, among a system's parameters */
 
 #define MCT_PHASES          2 /**< of a prescribed motion: one an axis */
 
@@ -41,17 +42,17 @@ typedef struct {
     mct_real kinetic_energy;  /**< [J] */
     mct_real magnetic_energy; /**< L i^2 / 2 of an inductive motor [J] */
     /* of position, velocity and input */
-    mct_real tau[MCT_MAX_COORDINATES];          /**< everything applied, per coordinate */
-    mct_real acceleration[MCT_MAX_COORDINATES]; /**< M^-1 (tau - C v) */
-    mct_real current;                           /**< of the motor [A] */
-    mct_real constraint_force[MCT_MAX_PARTICLES]
-                             [3]; /**< e = m xdd - f, f the forces on the particle from outside [N] */
-    mct_real power_input;         /**< of the force or torque, or V i of the motor's terminals [W] */
-    mct_real power_viscous;       /**< at most 0 [W] */
-    mct_real power_coulomb;       /**< at most 0 [W] */
-    mct_real power_resistance;    /**< - R i^2 [W] */
-    mct_real power_conversion;    /**< (k_T - k_b) i w: 0 where the motor's constants agree [W] */
-    mct_real power_base;          /**< of a base that moves as prescribed, through the constraints [W] */
+    mct_real tau[MCT_MAX_COORDINATES];               /**< everything applied, per coordinate */
+    mct_real acceleration[MCT_MAX_COORDINATES];      /**< M^-1 (tau - C v) */
+    mct_real current;                                /**< of the motor [A] */
+    mct_real force[MCT_MAX_PARTICLES][3];            /**< f on each particle from outside [N] */
+    mct_real constraint_force[MCT_MAX_PARTICLES][3]; /**< e = m xdd - f [N] */
+    mct_real power_input;      /**< of the force or torque, or V i of the motor's terminals [W] */
+    mct_real power_viscous;    /**< at most 0 [W] */
+    mct_real power_coulomb;    /**< at most 0 [W] */
+    mct_real power_resistance; /**< - R i^2 [W] */
+    mct_real power_conversion; /**< (k_T - k_b) i w: 0 where the motor's constants agree [W] */
+    mct_real power_base;       /**< of a base that moves as prescribed, through the constraints [W] */
 } mct_evaluation;
 
 /**
@@ -63,6 +64,31 @@ typedef struct {
     double A[(2 * MCT_MAX_ENCODERS) * (2 * MCT_MAX_ENCODERS)]; /**< row-major, states x states */
     double B[2 * MCT_MAX_ENCODERS];
 } mct_linear_model;
+
+/**
+ * A rotation among the coordinates: its position is a unit quaternion of four entries (w, x, y, z: body to space), its
+ * rate an angular velocity of three. It is the last three coordinates.
+ */
+typedef enum {
+    MCT_ATTITUDE_NONE,
+    MCT_ATTITUDE_SPACE, /**< the angular velocity is along the axes of space */
+    MCT_ATTITUDE_BODY   /**< along those of the body */
+} mct_attitude;
+
+/**
+ * A list among the parameters, a row for each of its items: particles = [[0.1, 0, -0.3], [0.2, 0.1, 0]]. With one
+ * column a row is a number: link_lengths = [0.3, 0.2].
+ */
+typedef struct {
+    const char *name;
+    const char *doc;
+    int column_count;
+    const mct_field *columns; /**< what the numbers of a row are; a choice is given by its name */
+    int fewest_rows;
+    int most_rows;
+    int standard_rows; /**< those of a scene that does not say */
+    const double *standard;
+} mct_row_list;
 
 /**
  * State of a simulated system. The exact value of entry i is x[i] + c[i], plus turns[i] whole turns of an
@@ -129,22 +155,30 @@ typedef struct {
 typedef struct mct_system {
     const char *name;
     const char *doc;
-    const char *source; /**< section of the source document */
-    int coordinate_count;
+    const char *source;   /**< section of the source document */
+    int coordinate_count; /**< n; the most of a system whose coordinates are listed */
     const mct_coordinate *coordinates;
+    mct_attitude attitude;  /**< whether the last three coordinates are a rotation */
+    bool lists_coordinates; /**< one for each row of the first list: see mct_coordinate_count() */
+    bool is_process;        /**< coordinates alone, without rates: they change by steps of their own */
     int parameter_count;
-    const mct_field *parameters;
+    const mct_field *parameters; /**< a choice is stored as its index */
+    int list_count;
+    const mct_row_list *lists; /**< further keys of [parameters] */
     /**
      * MCT_PHASES states that grow at constant rates while one of MCT_CLOCK is on: the clock of what is prescribed. Those
      * in rad are angles and lose whole turns.
      * States behind the rates, no coordinates. NULL without; a system with phases has no motor.
      */
     const mct_field *phases;
+    bool is_timed;                        /**< its kernels keep the time behind the states */
     const mct_field *input_without_motor; /**< name and unit of the input when the motor is off */
     uint32_t effects;                     /**< those that it supports */
     uint32_t standard_effects;            /**< those that are on when a scene does not say */
-    int particle_count;
+    int particle_count;                   /**< without a list of them */
     const char *const *particle_names;
+    bool
+        lists_particles; /**< one for each row of the first list, if there are any: see mct_particle_count() */
     const mct_actuation *actuation; /**< NULL for a system without a motor */
 
     /**
@@ -156,7 +190,8 @@ typedef struct mct_system {
     void (*evaluate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
                      mct_evaluation *out);
     /**
-     * The geometry x = h(q) for the generic Gauss engine (an mct_gauss_place; the context is `constants`).
+     * The geometry x = h(q) for the generic Gauss engine: an mct_gauss_place whose context is `constants`, but q holds a
+     * rotation as its quaternion. mct_judge() is the way to it.
      */
     void (*place)(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
                   mct_hyperdual (*position)[3]);
@@ -177,8 +212,20 @@ uint32_t mct_scene_effects(const struct mct_scene *scene);
 /** Number of encoders: those of a system with a motor. */
 int mct_encoder_count(const mct_system *system);
 
-/** Number of states of a system under an effect set: 2 n, plus the current of an inductive motor or the phases. */
-int mct_state_count(const mct_system *system, uint32_t effects);
+/** Number of coordinates n of a scene's system. */
+int mct_coordinate_count(const struct mct_scene *scene);
+
+/** Number of particles of a scene's system. */
+int mct_particle_count(const struct mct_scene *scene);
+
+/** Place of the first rate in a system's state: n, and one more with a rotation. Not of a process. */
+int mct_rate_index(const mct_system *system);
+
+/** Number of states of a scene's system: positions, rates, the current of an inductive motor or the phases. */
+int mct_state_count(const struct mct_scene *scene);
+
+/** The most states that a system may have, with any effects. */
+int mct_most_states(const mct_system *system);
 
 /** Whether state `index` is a phase. */
 bool mct_state_is_phase(const mct_system *system, int index);

@@ -26,4 +26,5 @@ const mct_effect mct_effects[MCT_EFFECT_COUNT] = {
      {0, MCT_STOKES, 0}},
     {"buoyancy", "weight of the displaced fluid", MCT_BUOYANCY, NULL, {0, MCT_BUOYANCY, 0}},
     {"forcing", "a force that changes in time as prescribed", MCT_FORCING, NULL, {0, MCT_FORCING, 0}},
+    {"forces", "constant forces on points of the mechanism", MCT_FORCES, NULL, {0, MCT_FORCES, 0}},
 };

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "mctau/compensated.h"
+#include "mctau/matrix.h"
 
 #define TURN 6.283185307179586476925
 /*
@@ -16,11 +17,10 @@ static const mct_real turn_rest = 2.4492935982947064e-16;
 #endif
 
 /* Finite, and within what any mechanism can do in a tick; false for NaN. */
-static bool is_sane(const mct_state *state)
+static bool is_sane(const mct_state *state, int states)
 {
     bool sane = true;
-    MCT_UNROLL
-    for (int i = 0; i < MCT_MAX_STATES; i++) {
+    for (int i = 0; i < states; i++) {
         sane &= state->x[i] <= MCT_STATE_BOUND && state->x[i] >= -MCT_STATE_BOUND;
     }
     return sane;
@@ -63,7 +63,7 @@ static void wrap_angles(mct_plant *plant)
         }
     }
     if (system->phases != NULL) {
-        for (int i = 2 * system->coordinate_count; i < mct_state_count(system, plant->effects); i++) {
+        for (int i = mct_rate_index(system) + system->coordinate_count; i < plant->states; i++) {
             if (mct_state_is_phase_angle(system, i)) {
                 (void)take_turns(state, i);
             }
@@ -71,9 +71,21 @@ static void wrap_angles(mct_plant *plant)
     }
 }
 
+/* What makes the quaternion's length 1. */
+static double attitude_scale(const mct_system *system, const double *values)
+{
+    if (system->attitude == MCT_ATTITUDE_NONE) {
+        return 1;
+    }
+    const double *q = values + mct_rate_index(system) - 4;
+    return 1 / mct_sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+}
+
 void mct_state_set(const mct_system *system, int states, const double *values, mct_state *state)
 {
     memset(state, 0, sizeof *state);
+    const int rate = mct_rate_index(system);
+    const double shrink = attitude_scale(system, values);
     for (int i = 0; i < states; i++) {
         double value = values[i];
         if (i < system->coordinate_count && system->coordinates[i].is_angle) {
@@ -81,6 +93,9 @@ void mct_state_set(const mct_system *system, int states, const double *values, m
             value -= state->turns[i] * TURN;
         } else if (mct_state_is_phase_angle(system, i)) {
             value -= (int32_t)(value / TURN) * TURN;
+        }
+        if (system->attitude != MCT_ATTITUDE_NONE && i >= rate - 4 && i < rate) {
+            value *= shrink;
         }
         state->x[i] = (mct_real)value;
         state->c[i] = (mct_real)(value - (double)state->x[i]);
@@ -104,8 +119,9 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
     plant->substeps = scene->substeps;
     plant->bound =
         bounded ? (mct_real)scene->parameters[plant->system->actuation->supply_parameter] : MCT_REAL_MAX;
-    mct_state_set(plant->system, mct_state_count(plant->system, plant->effects), scene->initial,
-                  &plant->state);
+    plant->states = mct_state_count(scene);
+    plant->entries = plant->states + (plant->system->is_timed ? 1 : 0);
+    mct_state_set(plant->system, plant->states, scene->initial, &plant->state);
     return plant->system->prepare(scene, scene->dt / scene->substeps, &plant->constants, why);
 }
 
@@ -117,12 +133,19 @@ void mct_plant_step(mct_plant *plant, mct_real input)
         plant->rejected_inputs++;
     }
     /* In place: copying what a kernel has just written would wait for its stores. */
-    const mct_state before = plant->state;
+    mct_real x[MCT_MAX_STATES], c[MCT_MAX_STATES];
+    for (int i = 0; i < plant->entries; i++) {
+        x[i] = plant->state.x[i];
+        c[i] = plant->state.c[i];
+    }
     plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
-    if (is_sane(&plant->state)) {
+    if (is_sane(&plant->state, plant->entries)) {
         wrap_angles(plant);
     } else {
-        plant->state = before;
+        for (int i = 0; i < plant->entries; i++) {
+            plant->state.x[i] = x[i];
+            plant->state.c[i] = c[i];
+        }
         plant->diverged_ticks++;
     }
     plant->tick++;

@@ -1,5 +1,6 @@
 #include "check.h"
 
+#include "mctau/matrix.h"
 #include "mctau/stepper.h"
 #include "text.h"
 
@@ -30,6 +31,38 @@ static void add_name(mct_message *message, const char *name, int *count)
     ++*count;
 }
 
+static void add_range(mct_message *message, const mct_field *field)
+{
+    if (field->kind == MCT_FIELD_CHOICE) {
+        for (int i = 0, count = 0; mct_choice_name(field, i) != NULL; i++) {
+            add_name(message, mct_choice_name(field, i), &count);
+        }
+        return;
+    }
+    add_bound(message, field, field->minimum);
+    mct_message_add(message, " to ");
+    add_bound(message, field, field->maximum);
+    mct_message_add_unit(message, field);
+}
+
+/* "1 to 32 rows of mass (1e-06 to 1e+06 kg), position_1 (...)", or "1 to 16 numbers from 0.001 to 100 m" */
+static void add_rows(mct_message *message, const mct_row_list *rows)
+{
+    mct_message_add_integer(message, rows->fewest_rows);
+    mct_message_add(message, " to ");
+    mct_message_add_integer(message, rows->most_rows);
+    mct_message_add(message, rows->column_count == 1 ? " numbers from " : " rows of ");
+    for (int i = 0; i < rows->column_count; i++) {
+        if (rows->column_count > 1) {
+            mct_message_add(message, i > 0 ? ", " : "");
+            mct_message_add(message, rows->columns[i].name);
+            mct_message_add(message, " (");
+        }
+        add_range(message, &rows->columns[i]);
+        mct_message_add(message, rows->column_count > 1 ? ")" : "");
+    }
+}
+
 void mct_message_add_allowed(mct_message *message, const mct_scene_key *key, const mct_system *system)
 {
     const mct_field *const field = &key->field;
@@ -53,16 +86,17 @@ void mct_message_add_allowed(mct_message *message, const mct_scene_key *key, con
         mct_message_add(message, " bytes");
         break;
     case MCT_FIELD_LIST:
+        if (key->rows != NULL) {
+            add_rows(message, key->rows);
+            break;
+        }
         mct_message_add(message, "at most ");
         mct_message_add_integer(message, MCT_MAX_LIST);
         mct_message_add(message, " numbers from ");
         /* fall through */
     case MCT_FIELD_REAL:
     case MCT_FIELD_INTEGER:
-        add_bound(message, field, field->minimum);
-        mct_message_add(message, " to ");
-        add_bound(message, field, field->maximum);
-        mct_message_add_unit(message, field);
+        add_range(message, field);
         break;
     }
 }
@@ -72,6 +106,12 @@ void mct_message_add_allowed(mct_message *message, const mct_scene_key *key, con
 bool mct_field_allows(const mct_field *field, double value)
 {
     return value >= field->minimum && value <= field->maximum; /* a NaN is neither */
+}
+
+static bool is_choice(const mct_field *field, double value)
+{
+    return value >= 0 && value < INT32_MAX && value == (int32_t)value &&
+           mct_choice_name(field, (int32_t)value) != NULL;
 }
 
 static mct_status refuse_number(const mct_scene_key *key, const mct_system *system, double value,
@@ -85,19 +125,41 @@ static mct_status refuse_number(const mct_scene_key *key, const mct_system *syst
     return MCT_ERROR_RANGE;
 }
 
-static mct_status examine_list(const mct_scene_key *key, const mct_system *system, const mct_list *list,
-                               mct_message *sentence)
+/* "found -1 kg as mass of row 2", "found 7 as number 3" */
+static void add_place(mct_message *sentence, const mct_row_list *rows, int32_t index)
 {
-    if (list->count < 0 || list->count > MCT_MAX_LIST) {
+    const bool has_columns = rows != NULL && rows->column_count > 1;
+    mct_message_add(sentence, " as ");
+    mct_message_add(sentence, has_columns ? rows->columns[index % rows->column_count].name : "number ");
+    mct_message_add(sentence, has_columns ? " of row " : "");
+    mct_message_add_integer(sentence, has_columns ? index / rows->column_count + 1 : index + 1);
+}
+
+mct_status mct_list_examine(const mct_scene_key *key, const mct_system *system, const mct_list *list,
+                            mct_message *sentence)
+{
+    const mct_row_list *const rows = key->rows;
+    const int columns = rows != NULL ? rows->column_count : 1;
+    const int32_t fewest = rows != NULL ? rows->fewest_rows : 0;
+    const int32_t most = rows != NULL ? rows->most_rows : MCT_MAX_LIST;
+    if (list->count % columns != 0 || list->count < fewest * columns || list->count > most * columns) {
         mct_message_add(sentence, "found ");
-        mct_message_add_integer(sentence, list->count);
-        mct_message_add(sentence, " numbers; allowed ");
+        mct_message_add_integer(sentence, list->count / columns);
+        mct_message_add(sentence, columns > 1 ? " rows; allowed " : " numbers; allowed ");
         mct_message_add_allowed(sentence, key, system);
         return MCT_ERROR_BOUND;
     }
     for (int32_t i = 0; i < list->count; i++) {
-        if (!mct_field_allows(&key->field, list->values[i])) {
-            return refuse_number(key, system, list->values[i], sentence);
+        const mct_field *const field = rows != NULL ? &rows->columns[i % columns] : &key->field;
+        const double value = list->values[i];
+        if (field->kind == MCT_FIELD_CHOICE ? !is_choice(field, value) : !mct_field_allows(field, value)) {
+            mct_message_add(sentence, "found ");
+            mct_message_add_number(sentence, value);
+            mct_message_add_unit(sentence, field);
+            add_place(sentence, rows, i);
+            mct_message_add(sentence, "; allowed ");
+            add_range(sentence, field);
+            return MCT_ERROR_RANGE;
         }
     }
     return MCT_OK;
@@ -122,11 +184,10 @@ static mct_status examine_key(const mct_scene *scene, const mct_scene_key *key, 
         return MCT_OK;
     }
     case MCT_FIELD_LIST:
-        return examine_list(key, system, (const mct_list *)(const void *)place, sentence);
+        return mct_list_examine(key, system, (const mct_list *)(const void *)place, sentence);
     case MCT_FIELD_CHOICE: {
         const double index = mct_key_get(scene, key);
-        return mct_choice_name(field, (int32_t)index) != NULL ? MCT_OK
-                                                              : refuse_number(key, system, index, sentence);
+        return is_choice(field, index) ? MCT_OK : refuse_number(key, system, index, sentence);
     }
     case MCT_FIELD_BOOLEAN: {
         const double value = mct_key_get(scene, key);
@@ -159,6 +220,8 @@ static mct_status examine_keys(const mct_scene *scene, const mct_system *system,
 }
 
 /* --- keys together --- */
+
+#define SMALLEST_QUATERNION 1e-100 /* whose square can still be divided by */
 
 static mct_status examine_effects(const mct_scene *scene, const mct_system *system, mct_blame *blame,
                                   mct_message *sentence)
@@ -359,6 +422,24 @@ static mct_status examine_input(const mct_scene *scene, mct_blame *blame, mct_me
     return MCT_OK;
 }
 
+static mct_status examine_attitude(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                                   mct_message *sentence)
+{
+    if (system->attitude == MCT_ATTITUDE_NONE) {
+        return MCT_OK;
+    }
+    const int first = mct_rate_index(system) - 4;
+    for (int i = first; i < first + 4; i++) {
+        if (mct_abs(scene->initial[i]) > SMALLEST_QUATERNION) {
+            return MCT_OK;
+        }
+    }
+    blame->table = "initial";
+    blame->key = mct_state_field(system, first)->name;
+    mct_message_add(sentence, "found a quaternion of length 0; allowed any other, as 1, 0, 0, 0");
+    return MCT_ERROR_UNSUITED;
+}
+
 static mct_status examine_duration(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
 {
     const double ticks = scene->duration / scene->dt;
@@ -398,6 +479,7 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     status = status != MCT_OK ? status : examine_stepper(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_controller(scene, blame, sentence);
     status = status != MCT_OK ? status : examine_input(scene, blame, sentence);
+    status = status != MCT_OK ? status : examine_attitude(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_duration(scene, blame, sentence);
     return status;
 }

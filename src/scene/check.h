@@ -18,6 +18,10 @@ bool mct_field_allows(const mct_field *field, double value);
 /* Adds what a key of a system allows: "0.001 to 1 s", "true or false", "none, constant, sine". */
 void mct_message_add_allowed(mct_message *message, const mct_scene_key *key, const mct_system *system);
 
+/* Checks the numbers of a list, and its rows; adds what is wrong. */
+mct_status mct_list_examine(const mct_scene_key *key, const mct_system *system, const mct_list *list,
+                            mct_message *sentence);
+
 /* Adds a unit, a blank ahead of it; nothing for a pure number. */
 void mct_message_add_unit(mct_message *message, const mct_field *field);
 

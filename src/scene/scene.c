@@ -161,6 +161,48 @@ static bool find_key(int table, const mct_system *system, mct_span name, mct_sce
     return false;
 }
 
+/* Whether `component` is that of a vector or a matrix: gravity_2 or inertia_1_3, attitude_w. */
+static bool is_component(mct_span vector, const char *component)
+{
+    const mct_span whole = mct_text_span(component);
+    const mct_span begin = {component, vector.length};
+    if (whole.length < vector.length + 2 || component[vector.length] != '_' ||
+        !mct_span_equal(begin, vector)) {
+        return false;
+    }
+    const size_t rest = whole.length - vector.length;
+    for (size_t i = 1; i < rest; i += 2) { /* _1, _1_3 */
+        const char c = component[vector.length + i];
+        const bool is_axis = (c >= '1' && c <= '3') || (c >= 'w' && c <= 'z');
+        if (!is_axis || component[vector.length + i - 1] != '_') {
+            return false;
+        }
+    }
+    return rest % 2 == 0;
+}
+
+/* Component `number` of a vector; the one behind the last has no name. */
+static mct_scene_key component_at(int table, const mct_system *system, mct_span vector, int number)
+{
+    for (int i = 0, count = 0; i < mct_key_count(table, system); i++) {
+        const mct_scene_key key = mct_key_at(table, system, i);
+        if (is_component(vector, key.field.name) && count++ == number) {
+            return key;
+        }
+    }
+    const mct_scene_key none = {.field = {.name = NULL}};
+    return none;
+}
+
+static int component_count(int table, const mct_system *system, mct_span vector)
+{
+    int count = 0;
+    while (component_at(table, system, vector, count).field.name != NULL) {
+        count++;
+    }
+    return count;
+}
+
 static mct_status refuse_table(const reader *self, const char *override_origin, int32_t line, mct_span name)
 {
     suggestion names;
@@ -309,26 +351,88 @@ static mct_status set_text(reader *self, given value, const mct_scene_key *key)
     return MCT_OK;
 }
 
+/* One number of a list, or the index of a name. */
+static mct_status read_item(const reader *self, given value, const mct_scene_key *key, const mct_field *field,
+                            const mct_toml_entry *item, double *number)
+{
+    char name[MCT_MAX_TEXT];
+    if (field->kind != MCT_FIELD_CHOICE) {
+        *number = item->number;
+        return item->kind == MCT_TOML_INTEGER || item->kind == MCT_TOML_REAL
+                   ? MCT_OK
+                   : refuse_value(self, value, key, ", where numbers belong", MCT_ERROR_RANGE);
+    }
+    if (item->kind == MCT_TOML_TEXT) {
+        mct_toml_text(item, name, sizeof name);
+        for (int32_t i = 0; mct_choice_name(field, i) != NULL; i++) {
+            if (mct_text_equal(name, mct_choice_name(field, i))) {
+                *number = i;
+                return MCT_OK;
+            }
+        }
+    }
+    return refuse_value(self, value, key, ", with a name that is unknown", MCT_ERROR_RANGE);
+}
+
+static mct_status read_row(const reader *self, given value, const mct_scene_key *key,
+                           const mct_toml_entry *row, mct_list *list)
+{
+    size_t position = 0;
+    mct_toml_entry item;
+    mct_status status = MCT_OK;
+    if (row->kind != MCT_TOML_LIST || row->count != key->rows->column_count) {
+        begin_key(self, value);
+        mct_message_add(self->why, "found ");
+        add_shown(self->why, row->source);
+        mct_message_add(self->why, " as row ");
+        mct_message_add_integer(self->why, list->count / key->rows->column_count + 1);
+        mct_message_add(self->why, "; allowed ");
+        mct_message_add_allowed(self->why, key, self->system);
+        return MCT_ERROR_RANGE;
+    }
+    for (int i = 0; status == MCT_OK && mct_toml_item(row, &position, &item); i++) {
+        status = read_item(self, value, key, &key->rows->columns[i], &item, &list->values[list->count]);
+        list->count++;
+    }
+    return status;
+}
+
 static mct_status set_list(reader *self, given value, const mct_scene_key *key)
 {
     mct_list list;
+    mct_toml_entry item;
+    mct_message sentence;
+    size_t position = 0;
+    mct_status status = MCT_OK;
+    const int columns = key->rows != NULL ? key->rows->column_count : 1;
+    const int most = key->rows != NULL ? key->rows->most_rows : MCT_MAX_LIST;
     memset(&list, 0, sizeof list);
-    if (value.entry->count > MCT_MAX_LIST) {
-        return refuse_value(self, value, key, ", which is too long", MCT_ERROR_BOUND);
+    if (value.entry->count > most) {
+        begin_key(self, value);
+        mct_message_add(self->why, "found ");
+        mct_message_add_integer(self->why, value.entry->count);
+        mct_message_add(self->why, columns > 1 ? " rows; allowed " : " numbers; allowed ");
+        mct_message_add_allowed(self->why, key, self->system);
+        return MCT_ERROR_BOUND;
     }
-    list.count = mct_toml_list(value.entry, list.values, MCT_MAX_LIST);
-    for (int32_t i = 0; i < list.count; i++) {
-        if (!mct_field_allows(&key->field, list.values[i])) {
-            begin_key(self, value);
-            mct_message_add(self->why, "found ");
-            mct_message_add_number(self->why, list.values[i]);
-            mct_message_add_unit(self->why, &key->field);
-            mct_message_add(self->why, " as number ");
-            mct_message_add_integer(self->why, i + 1);
-            mct_message_add(self->why, "; allowed ");
-            mct_message_add_allowed(self->why, key, self->system);
-            return MCT_ERROR_RANGE;
+    while (status == MCT_OK && mct_toml_item(value.entry, &position, &item)) {
+        if (columns > 1) {
+            status = read_row(self, value, key, &item, &list);
+        } else {
+            status = read_item(self, value, key, key->rows != NULL ? &key->rows->columns[0] : &key->field,
+                               &item, &list.values[list.count]);
+            list.count++;
         }
+    }
+    if (status != MCT_OK) {
+        return status;
+    }
+    mct_message_clear(&sentence);
+    status = mct_list_examine(key, self->system, &list, &sentence);
+    if (status != MCT_OK) {
+        begin_key(self, value);
+        mct_message_add(self->why, sentence.text);
+        return status;
     }
     memcpy((char *)&self->scene + key->field.offset, &list, sizeof list);
     return MCT_OK;
@@ -371,6 +475,65 @@ static mct_status set_value(reader *self, given value, const mct_scene_key *key)
     return MCT_OK;
 }
 
+/*
+ * A vector: one list for the keys that its components have on their own, gravity = [0, -9.81, 0] for gravity_1,
+ * gravity_2 and gravity_3; a matrix is a list of its rows. Each is set as if it stood alone.
+ */
+static mct_status set_components(reader *self, given value, int table, const mct_toml_entry *list,
+                                 int *number)
+{
+    mct_toml_entry item;
+    size_t position = 0;
+    mct_status status = MCT_OK;
+    while (status == MCT_OK && mct_toml_item(list, &position, &item)) {
+        if (item.kind == MCT_TOML_LIST) {
+            status = set_components(self, value, table, &item, number);
+            continue;
+        }
+        const mct_scene_key key = component_at(table, self->system, value.entry->key, *number);
+        item.table = value.entry->table;
+        item.key = mct_text_span(key.field.name);
+        item.line = value.entry->line;
+        const given component = {&item, value.origin};
+        status = set_value(self, component, &key);
+        ++*number;
+    }
+    return status;
+}
+
+/* Numbers in a list and in the lists that it holds. */
+static int count_numbers(const mct_toml_entry *list)
+{
+    mct_toml_entry item;
+    size_t position = 0;
+    int count = 0;
+    while (mct_toml_item(list, &position, &item)) {
+        count += item.kind == MCT_TOML_LIST ? count_numbers(&item) : 1;
+    }
+    return count;
+}
+
+static mct_status set_vector(reader *self, given value, int table)
+{
+    const int components = component_count(table, self->system, value.entry->key);
+    const int count = value.entry->kind == MCT_TOML_LIST ? count_numbers(value.entry) : -1;
+    if (count != components) {
+        begin_key(self, value);
+        mct_message_add(self->why, "found ");
+        add_shown(self->why, value.entry->source);
+        mct_message_add(self->why, "; allowed a list of ");
+        mct_message_add_integer(self->why, components);
+        mct_message_add(self->why, ":");
+        for (int i = 0; i < components; i++) {
+            mct_message_add(self->why, i > 0 ? ", " : " ");
+            mct_message_add(self->why, component_at(table, self->system, value.entry->key, i).field.name);
+        }
+        return MCT_ERROR_RANGE;
+    }
+    int number = 0;
+    return set_components(self, value, table, value.entry, &number);
+}
+
 static mct_status set_entry(reader *self, given value)
 {
     mct_scene_key key;
@@ -378,10 +541,11 @@ static mct_status set_entry(reader *self, given value)
     if (table < 0) {
         return refuse_table(self, value.origin, value.entry->line, value.entry->table);
     }
-    if (!find_key(table, self->system, value.entry->key, &key)) {
-        return refuse_key(self, value, table);
+    if (find_key(table, self->system, value.entry->key, &key)) {
+        return set_value(self, value, &key);
     }
-    return set_value(self, value, &key);
+    return component_count(table, self->system, value.entry->key) > 0 ? set_vector(self, value, table)
+                                                                      : refuse_key(self, value, table);
 }
 
 /* --- overrides --- */
@@ -396,15 +560,23 @@ static mct_status read_override(const reader *self, const mct_override *given_ov
     }
     mct_scene_key key;
     const int table = find_table(entry->table);
-    const bool known = table >= 0 && find_key(table, self->system, entry->key, &key);
+    const bool is_key = table >= 0 && find_key(table, self->system, entry->key, &key);
+    const bool known = is_key || (table >= 0 && component_count(table, self->system, entry->key) > 0);
     const char first = entry->source.length > 0 ? entry->source.start[0] : '\0';
-    entry->is_bare = !known || ((key.field.kind == MCT_FIELD_TEXT || key.field.kind == MCT_FIELD_CHOICE) &&
-                                first != '"' && first != '\'');
+    entry->is_bare =
+        !known || (is_key && (key.field.kind == MCT_FIELD_TEXT || key.field.kind == MCT_FIELD_CHOICE) &&
+                   first != '"' && first != '\'');
     if (entry->is_bare) { /* an unknown key is refused as such, whatever its value */
         entry->kind = MCT_TOML_TEXT;
         return MCT_OK;
     }
     return mct_toml_read_value(given_override->origin, entry, self->why);
+}
+
+/* Whether what is written as `written` sets the key: it is its name, or that of its vector. */
+static bool gives(mct_span written, const char *key)
+{
+    return mct_span_is(written, key) || is_component(written, key);
 }
 
 /* The last value given for a key, NULL when none is; an override is split into `storage`. */
@@ -414,7 +586,7 @@ static given find_given(const reader *self, const char *table, const char *key, 
     for (int i = self->override_count - 1; i >= 0; i--) {
         const mct_override *const candidate = &self->overrides[i];
         if (read_override(self, candidate, storage) == MCT_OK && mct_span_is(storage->table, table) &&
-            mct_span_is(storage->key, key)) {
+            gives(storage->key, key)) {
             found.entry = storage;
             found.origin = candidate->origin != NULL ? candidate->origin : "";
             return found;
@@ -422,7 +594,7 @@ static given find_given(const reader *self, const char *table, const char *key, 
     }
     for (int i = 0; i < self->toml.entry_count && found.entry == NULL; i++) {
         const mct_toml_entry *const entry = &self->toml.entries[i];
-        if (mct_span_is(entry->table, table) && mct_span_is(entry->key, key)) {
+        if (mct_span_is(entry->table, table) && gives(entry->key, key)) {
             found.entry = entry;
         }
     }
@@ -499,8 +671,7 @@ static mct_status refuse_idle_keys(const reader *self)
             const char *const name = key.field.name;
             const bool is_input = mct_text_equal(mct_table_name(table), "input");
             const bool idle_input = is_input && !mct_input_reads(self->scene.input, name);
-            const bool idle_state = table == MCT_TABLE_INITIAL &&
-                                    i >= mct_state_count(self->system, mct_scene_effects(&self->scene));
+            const bool idle_state = table == MCT_TABLE_INITIAL && i >= mct_state_count(&self->scene);
             if (!idle_input && !idle_state) {
                 continue;
             }

@@ -177,11 +177,11 @@ int mct_key_count(int table, const mct_system *system)
 {
     switch (table) {
     case MCT_TABLE_PARAMETERS:
-        return system->parameter_count;
+        return system->parameter_count + system->list_count;
     case MCT_TABLE_EFFECTS:
         return MCT_EFFECT_COUNT;
     case MCT_TABLE_INITIAL:
-        return mct_state_count(system, system->effects);
+        return mct_most_states(system);
     case MCT_TABLE_WEIGHTS:
         return 2 * mct_encoder_count(system);
     default:
@@ -199,8 +199,19 @@ mct_scene_key mct_key_at(int table, const mct_system *system, int number)
     const int coordinates = system->coordinate_count;
     switch (table) {
     case MCT_TABLE_PARAMETERS:
-        key.field = system->parameters[number];
-        key.field.offset = PLACE(parameters) + place;
+        if (number < system->parameter_count) {
+            key.field = system->parameters[number];
+            key.field.offset = PLACE(parameters) + place;
+            key.is_real = true;
+        } else {
+            const int list = number - system->parameter_count;
+            key.rows = &system->lists[list];
+            key.field.name = key.rows->name;
+            key.field.unit = key.rows->column_count == 1 ? key.rows->columns[0].unit : "";
+            key.field.doc = key.rows->doc;
+            key.field.kind = MCT_FIELD_LIST;
+            key.field.offset = PLACE(lists) + sizeof(mct_list) * (size_t)list;
+        }
         return key;
     case MCT_TABLE_EFFECTS:
         key.effect = &mct_effects[number];
@@ -272,7 +283,7 @@ double mct_key_get(const mct_scene *scene, const mct_scene_key *key)
         const uint32_t bits = scene->effects & key->effect->mask;
         return bits == 0 ? 0 : bits == key->effect->bits[1] ? 1 : 2;
     }
-    if (key->field.kind == MCT_FIELD_REAL) {
+    if (key->is_real || key->field.kind == MCT_FIELD_REAL) {
         double value;
         memcpy(&value, place, sizeof value);
         return value;
@@ -287,7 +298,7 @@ void mct_key_set(mct_scene *scene, const mct_scene_key *key, double value)
     char *const place = (char *)scene + key->field.offset;
     if (key->effect != NULL) {
         scene->effects = (scene->effects & ~key->effect->mask) | key->effect->bits[(int)value];
-    } else if (key->field.kind == MCT_FIELD_REAL) {
+    } else if (key->is_real || key->field.kind == MCT_FIELD_REAL) {
         memcpy(place, &value, sizeof value);
     } else {
         const int32_t integer = (int32_t)value;
@@ -342,6 +353,11 @@ void mct_scene_defaults(mct_scene *scene, int system)
                 mct_key_set(scene, &key, key.field.standard);
             }
         }
+    }
+    for (int i = 0; i < descriptor->list_count; i++) {
+        const mct_row_list *const rows = &descriptor->lists[i];
+        scene->lists[i].count = rows->standard_rows * rows->column_count;
+        memcpy(scene->lists[i].values, rows->standard, sizeof(double) * (size_t)scene->lists[i].count);
     }
     memcpy(scene->hal, hal, sizeof hal);
     scene->system = system;

@@ -19,6 +19,8 @@ enum {
 typedef struct {
     mct_field field;          /* `offset` is that in mct_scene */
     const mct_effect *effect; /* an effect, whose bits lie in mct_scene.effects; else NULL */
+    const mct_row_list *rows; /* of a list of a system; else NULL */
+    bool is_real;             /* whatever it is, it is stored as double */
 } mct_scene_key;
 
 const char *mct_table_name(int table);

@@ -252,7 +252,7 @@ static mct_status skip_text(scanner *self)
     return MCT_OK;
 }
 
-static void skip_between_numbers(scanner *self)
+static void skip_between_items(scanner *self)
 {
     size_t before;
     do {
@@ -265,36 +265,30 @@ static void skip_between_numbers(scanner *self)
     } while (self->position > before);
 }
 
-/* Reads a list, keeping the first `capacity` numbers. */
-static mct_status read_list(scanner *self, double *values, int32_t capacity, int32_t *count)
+enum { MOST_DEPTH = 2 }; /* of lists within lists */
+
+static mct_status read_value(scanner *self, int depth, mct_toml_entry *entry);
+
+static mct_status read_list(scanner *self, int depth, int32_t *count)
 {
     const scanner start = *self;
     *count = 0;
     self->position++;
     for (;;) {
-        skip_between_numbers(self);
-        const char c = peek(self, 0);
+        skip_between_items(self);
         if (at_end(self)) {
             return fault_at(&start, start.position, "this list has no closing bracket", "");
         }
-        if (c == ']') {
+        if (peek(self, 0) == ']') {
             break;
         }
-        const mct_span word = peek_word(self);
-        if (c == '"' || c == '\'' || c == '[' || c == '{' || mct_span_is(word, "true") ||
-            mct_span_is(word, "false")) {
-            return fault_at(self, self->position, "a list of anything but numbers", outside);
-        }
-        mct_number number;
-        const mct_status status = read_number(self, &number);
+        mct_toml_entry item;
+        const mct_status status = read_value(self, depth, &item);
         if (status != MCT_OK) {
             return status;
         }
-        if (*count < capacity) {
-            values[*count] = number.value;
-        }
         ++*count;
-        skip_between_numbers(self);
+        skip_between_items(self);
         if (peek(self, 0) == ',') {
             self->position++;
         } else if (!at_end(self) && peek(self, 0) != ']') {
@@ -305,7 +299,8 @@ static mct_status read_list(scanner *self, double *values, int32_t capacity, int
     return MCT_OK;
 }
 
-static mct_status read_value(scanner *self, mct_toml_entry *entry)
+/* `depth`: lists around the value. At most MOST_DEPTH + 1 calls deep. */
+static mct_status read_value(scanner *self, int depth, mct_toml_entry *entry)
 {
     const size_t start = self->position;
     const char c = peek(self, 0);
@@ -318,9 +313,11 @@ static mct_status read_value(scanner *self, mct_toml_entry *entry)
     if (c == '"' || c == '\'') {
         entry->kind = MCT_TOML_TEXT;
         status = skip_text(self);
+    } else if (c == '[' && depth == MOST_DEPTH) {
+        status = fault_at(self, start, "a list of lists of lists", outside);
     } else if (c == '[') {
         entry->kind = MCT_TOML_LIST;
-        status = read_list(self, NULL, 0, &entry->count);
+        status = read_list(self, depth + 1, &entry->count);
     } else if (c == '{') {
         status = fault_at(self, start, "a table within a line", outside);
     } else if (mct_span_is(word, "true") || mct_span_is(word, "false")) {
@@ -490,7 +487,7 @@ static mct_status read_entry(scanner *self, mct_toml *toml, mct_span table)
     if (at_end(self) || at_newline(self) || peek(self, 0) == '#') {
         return fault_quoting(self, self->position, entry->key, " has no value");
     }
-    status = read_value(self, entry);
+    status = read_value(self, 0, entry);
     toml->entry_count += status == MCT_OK ? 1 : 0;
     return status;
 }
@@ -568,7 +565,7 @@ mct_status mct_toml_read_value(const char *origin, mct_toml_entry *entry, mct_me
 {
     const mct_span whole = entry->source;
     scanner self = {whole.start, whole.length, 0, 0, 0, origin, why, entry};
-    const mct_status status = read_value(&self, entry);
+    const mct_status status = read_value(&self, 0, entry);
     if (status != MCT_OK || self.position == whole.length) {
         return status;
     }
@@ -609,12 +606,18 @@ size_t mct_toml_text(const mct_toml_entry *entry, char *text, size_t capacity)
     return length;
 }
 
-int32_t mct_toml_list(const mct_toml_entry *entry, double *values, int32_t capacity)
+bool mct_toml_item(const mct_toml_entry *list, size_t *position, mct_toml_entry *item)
 {
-    scanner self = {entry->source.start, entry->source.length, 0, 0, 0, "", NULL, NULL};
-    int32_t count;
-    if (read_list(&self, values, capacity, &count) != MCT_OK) {
-        return 0;
+    scanner self = {
+        list->source.start, list->source.length, *position > 0 ? *position : 1, 0, 0, "", NULL, NULL};
+    skip_between_items(&self);
+    if (peek(&self, 0) == ',') {
+        self.position++;
+        skip_between_items(&self);
     }
-    return count < capacity ? count : capacity;
+    if (peek(&self, 0) == ']' || read_value(&self, 1, item) != MCT_OK) {
+        return false;
+    }
+    *position = self.position;
+    return true;
 }

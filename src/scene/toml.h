@@ -1,6 +1,6 @@
 /*
  * A strict subset of TOML 1.0: tables, bare keys, `table.key = value` ahead of the first table, numbers,
- * booleans, texts of one line, lists of numbers, comments, CRLF, a byte order mark. What it accepts, TOML
+ * booleans, texts of one line, lists and lists of lists, comments, CRLF, a byte order mark. What it accepts, TOML
  * accepts with the same meaning (but for the mark, of which TOML 1.0 says nothing). What TOML forbids is
  * refused with the reason; what TOML has and the subset has not is refused by saying so.
  *
@@ -36,7 +36,7 @@ typedef struct {
     mct_toml_kind kind;
     bool is_bare;         /* a text from outside of a file, without quotes: `source` as it stands */
     int32_t line, column; /* of the key, from 1; columns count bytes */
-    int32_t count;        /* numbers in a list */
+    int32_t count;        /* items of a list */
     int64_t integer;      /* an integer; 0 or 1 of a boolean */
     double number;        /* an integer or a real */
 } mct_toml_entry;
@@ -70,7 +70,7 @@ mct_status mct_toml_read_value(const char *origin, mct_toml_entry *entry, mct_me
  * `capacity`, NUL included. */
 size_t mct_toml_text(const mct_toml_entry *entry, char *text, size_t capacity);
 
-/* The numbers of a MCT_TOML_LIST, at most `capacity`; returns how many were written. */
-int32_t mct_toml_list(const mct_toml_entry *entry, double *values, int32_t capacity);
+/* The next item of a MCT_TOML_LIST, `position` being 0 for the first; false behind the last. */
+bool mct_toml_item(const mct_toml_entry *list, size_t *position, mct_toml_entry *item);
 
 #endif

@@ -15,13 +15,16 @@
 typedef void (*mct_derivative)(const void *constants, unsigned effects, const mct_real *x, mct_real u,
                                mct_real *dx);
 
-#define MCT_TIMED (UINT32_C(1) << 31) /* no effect, but of a kernel's mask: the state carries the time */
+/* No effects, but of a kernel's mask: */
+#define MCT_TIMED (UINT32_C(1) << 31) /* the state carries the time */
+#define MCT_ROTATION \
+    (UINT32_C(1) << 30) /* the last three coordinates are a rotation, four entries of the state */
 
 /* Entries of a state that a kernel carries: n coordinates, their rates, then current, phases or time. */
 MCT_INLINE int mct_entries(unsigned effects, int n)
 {
     return 2 * n + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0) + ((effects & MCT_CLOCK) ? MCT_PHASES : 0) +
-           ((effects & MCT_TIMED) ? 1 : 0);
+           ((effects & MCT_TIMED) ? 1 : 0) + ((effects & MCT_ROTATION) ? 1 : 0);
 }
 
 /*

@@ -12,4 +12,6 @@ const mct_stepper mct_steppers[MCT_STEPPER_COUNT] = {
                           0},
     [MCT_STEPPER_RK4] = {"rk4", 4, "classical Runge-Kutta: the generic default", 2.785},
     [MCT_STEPPER_EXPO] = {"expo", 4, "exponential Nystroem on the exact flow of the linear part: any L/R", 0},
+    [MCT_STEPPER_DISCRETE] = {"discrete", 1,
+                              "the steps of a process that has no time of its own: inverse kinematics", 0},
 };

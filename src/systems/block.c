@@ -552,6 +552,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->mass[0] = k->mass;
     out->position[0][0] = k->cosine * position;
     out->position[0][1] = k->sine * position;
+    const mct_real along = out->tau[0] - k->weight_along;
+    out->force[0][0] = k->cosine * along;
+    out->force[0][1] = k->sine * along - k->weight;
     out->constraint_force[0][0] = -k->weight * k->cosine * k->sine;
     out->constraint_force[0][1] = k->weight * k->cosine * k->cosine;
     out->kinetic_energy = MCT_R(0.5) * k->mass * v * v;

@@ -342,6 +342,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->position[0][0] = x[0];
     out->position[1][0] = x[0] + k->length * s;
     out->position[1][1] = k->length * c;
+    out->force[0][0] = out->tau[0];
+    out->force[0][1] = -k->cart_mass * k->gravity;
+    out->force[1][1] = -k->pole_mass * k->gravity;
     out->constraint_force[0][0] = k->cart_mass * a - out->tau[0];
     out->constraint_force[0][1] = k->cart_mass * k->gravity;
     out->constraint_force[1][0] = k->pole_mass * pole_acceleration[0];

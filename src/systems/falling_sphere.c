@@ -272,6 +272,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->tau[0] = k->mass * out->acceleration[0];
     out->mass[0] = k->mass;
     out->position[0][1] = x[0];
+    out->force[0][1] = out->tau[0];
     out->kinetic_energy = MCT_R(0.5) * k->mass * v * v;
     out->potential_energy = (k->weight - k->lift) * x[0];
     out->power_input = u * v;

@@ -104,7 +104,12 @@ static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int ste
     MCT_SWITCH_INCREMENTS(stepper, expression)           \
     MCT_SWITCH_KERNEL(stepper, remainder, n, s, 0)       \
     static const mct_kernel stepper##_kernels[1] = {stepper##_s};
-/* Kernels of a stepper for two, three, four and five switches; bit i of the index is switch i. */
+/* Kernels of a stepper for one switch, */
+#define MCT_KERNELS_1(stepper, remainder, n, A, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)              \
+    MCT_PAIR(stepper, remainder, n, s, 0, A)                \
+    static const mct_kernel stepper##_kernels[2] = {MCT_PAIR_NAMES(stepper, s)};
+/* for two, three, four and five switches; bit i of the index is switch i. */
 #define MCT_KERNELS_2(...) MCT_KERNELS_2_OF(__VA_ARGS__)
 #define MCT_KERNELS_2_OF(stepper, remainder, n, A, B, expression) \
     MCT_SWITCH_INCREMENTS(stepper, expression)                    \

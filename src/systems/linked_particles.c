@@ -106,11 +106,15 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->mass[1] = k->mass[1];
     out->position[0][0] = x[0];
     out->position[1][0] = x[0] + k->separation;
+    out->force[0][0] = along_1;
+    out->force[1][0] = along_2;
     /* m1 a - f11, without a difference of large numbers. */
     const mct_real push = k->inverse_mass * (k->mass[0] * along_2 - k->mass[1] * along_1);
     out->constraint_force[0][0] = push;
     out->constraint_force[1][0] = -push;
     for (int i = 1; i < 3; i++) {
+        out->force[0][i] = k->force[0][i];
+        out->force[1][i] = k->force[1][i];
         out->constraint_force[0][i] = 0 - k->force[0][i]; /* not -0 */
         out->constraint_force[1][i] = 0 - k->force[1][i];
     }

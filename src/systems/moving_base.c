@@ -284,6 +284,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->mass[0] = k->mass;
     out->position[0][0] = u_x[0] + k->length * s;
     out->position[0][1] = u_x[1] + k->length * c;
+    out->force[0][1] = -k->mass * k->gravity;
     e[0] = k->mass * (u_a[0] + k->length * (c * a - s * w * w));
     e[1] = k->mass * (u_a[1] - k->length * (s * a + c * w * w) + k->gravity);
     out->kinetic_energy = MCT_R(0.5) * k->mass * (velocity[0] * velocity[0] + velocity[1] * velocity[1]);
@@ -302,7 +303,8 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     mct_hyperdual_sincos(q[0], &of_rod[0], &of_rod[1]);
     for (int axis = 0; axis < MCT_PHASES; axis++) {
         const mct_base_axis *base = &k->base[axis];
-        const mct_hyperdual turned = mct_hyperdual_scale(base->frequency, time);
+        mct_hyperdual turned = mct_hyperdual_scale(base->frequency, time);
+        turned.value = q[FIRST_PHASE - 1 + axis].value; /* the clock, where there is one */
         const mct_hyperdual phase = mct_hyperdual_add(turned, mct_hyperdual_constant(base->phase));
         position[0][axis] = mct_hyperdual_add(mct_hyperdual_scale(k->length, of_rod[axis]),
                                               mct_hyperdual_scale(base->amplitude, mct_hyperdual_cos(phase)));

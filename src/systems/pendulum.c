@@ -162,6 +162,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->mass[0] = k->mass;
     out->position[0][0] = k->length * s;
     out->position[0][1] = k->length * c;
+    out->force[0][1] = -k->mass * k->gravity;
     out->constraint_force[0][0] = k->mass * k->length * (c * a - s * w * w);
     out->constraint_force[0][1] = k->mass * (k->gravity - k->length * (s * a + c * w * w));
     out->kinetic_energy = MCT_R(0.5) * k->inertia * w * w;

@@ -113,7 +113,7 @@ static int linear_part(const mct_scene *scene, uint32_t effects, double *A, doub
 {
     const double *p = scene->parameters;
     const int n = 2;
-    const int states = mct_state_count(mct_systems[scene->system], effects);
+    const int states = 4 + ((effects & MCT_MOTOR_INDUCTIVE) ? 1 : 0);
     const double inverse_J = 1 / (p[WHEEL_MASS] * p[ARM_LENGTH] * p[ARM_LENGTH] + p[ARM_INERTIA]);
     const double inverse_I = 1 / p[WHEEL_INERTIA];
     const bool viscous = effects & MCT_VISCOUS;
@@ -368,6 +368,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         out->mass[i] = masses[i];
         out->position[i][0] = on_arm[i] * s + on_rim[i] * rim_s;
         out->position[i][1] = on_arm[i] * c + on_rim[i] * rim_c;
+        out->force[i][1] = -masses[i] * k->gravity;
         out->constraint_force[i][0] = masses[i] * (on_arm[i] * along[0] + on_rim[i] * rim[0]);
         out->constraint_force[i][1] = masses[i] * (on_arm[i] * along[1] + on_rim[i] * rim[1] + k->gravity);
     }

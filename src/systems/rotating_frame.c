@@ -460,6 +460,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     turn_back(rotation, -c[1], c[2], missing, out->constraint_force[0]);
     turn_back(rotation, -c[1], c[2], z, space);
     turn_back(rotation, c[1], c[2], k->force, force);
+    for (int i = 0; i < N; i++) {
+        out->force[0][i] = k->force[i] + weight[i] - k->mass * drag_rate * space[i];
+    }
     out->kinetic_energy = MCT_R(0.5) * k->mass * dot(z, z);
     out->potential_energy = -weight[1] * out->position[0][1];
     out->power_input = dot(force, z);
@@ -548,6 +551,7 @@ const mct_system mct_rotating_frame = {
     .coordinates = coordinates,
     .parameter_count = PARAMETERS,
     .parameters = parameters,
+    .is_timed = true,
     .input_without_motor = NULL,
     .effects = MCT_GRAVITY | MCT_DRAG | APPARENT,
     .standard_effects = APPARENT,

@@ -177,6 +177,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         out->mass[i] = mass;
         out->position[i][0] = right;
         out->position[i][1] = up;
+        out->force[i][1] = -mass * k->gravity;
         out->constraint_force[i][0] = mass * (-up * a - right * w * w);
         out->constraint_force[i][1] = mass * (right * a - up * w * w + k->gravity);
     }

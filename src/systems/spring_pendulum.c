@@ -363,13 +363,16 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->Cv[0] = -m * r * w * w;
     out->Cv[1] = 2 * m * r * rd * w;
     const mct_real couple = u - k->angle_viscous * w;
-    out->tau[0] = -k->stiffness * stretch - k->length_viscous * rd - m * k->gravity * s;
+    const mct_real along = -k->stiffness * stretch - k->length_viscous * rd;
+    out->tau[0] = along - m * k->gravity * s;
     out->tau[1] = couple - m * k->gravity * r * c;
     out->acceleration[0] = k->inverse_mass * (out->tau[0] - out->Cv[0]);
     out->acceleration[1] = (out->tau[1] - out->Cv[1]) / out->M[1][1];
     out->mass[0] = m;
     out->position[0][0] = r * c;
     out->position[0][1] = r * s;
+    out->force[0][0] = along * c;
+    out->force[0][1] = along * s - m * k->gravity;
     out->constraint_force[0][0] = -couple / r * s;
     out->constraint_force[0][1] = couple / r * c;
     out->kinetic_energy = MCT_R(0.5) * m * (rd * rd + r * r * w * w);

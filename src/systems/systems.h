@@ -4,6 +4,9 @@
 
 #include "mctau/system.h"
 
+/* "particle_1" and on, MCT_MAX_PARTICLES of them: of a system that lists its particles. */
+extern const char *const mct_particle_numbers[MCT_MAX_PARTICLES];
+
 extern const mct_system mct_cart_pole;
 extern const mct_system mct_reaction_wheel;
 extern const mct_system mct_pendulum;

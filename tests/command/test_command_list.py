@@ -8,12 +8,12 @@ def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(res
         "cart_pole", "reaction_wheel", "pendulum", "spring_pendulum", "linked_particles", "moving_base",
         "rotating_frame", "solid_pendulum", "block", "falling_sphere"]  # fmt: skip
     assert {stepper["name"]: stepper["order"] for stepper in found["steppers"]} == {
-        "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "expo": 4,
+        "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "expo": 4, "discrete": 1,
     }  # fmt: skip
     assert found["controllers"] == ["none", "swing_up_balance"]
     assert [effect["name"] for effect in found["effects"]] == [
         "gravity", "viscous", "coulomb", "motor", "saturation", "drag", "spring", "base_motion", "centrifugal",
-        "coriolis", "euler", "stokes", "buoyancy", "forcing"]  # fmt: skip
+        "coriolis", "euler", "stokes", "buoyancy", "forcing", "forces"]  # fmt: skip
 
 
 def test_every_parameter_and_coordinate_has_unit_range_and_a_default_within(result):

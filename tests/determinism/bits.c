@@ -60,7 +60,7 @@ static uint64_t with_reals(uint64_t hash, const mct_real *values, size_t count)
 
 static uint64_t with_state(uint64_t hash, const mct_system *system, const mct_state *state)
 {
-    const size_t states = (size_t)mct_state_count(system, system->effects);
+    const size_t states = (size_t)mct_most_states(system);
     hash = with_reals(hash, state->x, states);
     hash = with_reals(hash, state->c, states);
     for (int i = 0; i < system->coordinate_count; i++) {
@@ -76,8 +76,8 @@ static uint64_t with_evaluation(uint64_t hash, const mct_evaluation *at)
     for (int i = 0; i < N; i++) {
         hash = with_reals(hash, at->M[i], N);
     }
-    hash = with_reals(hash, &at->position[0][0], 3 * MCT_MAX_PARTICLES);
-    hash = with_reals(hash, at->mass, MCT_MAX_PARTICLES);
+    hash = with_reals(hash, &at->position[0][0], 3 * 4);
+    hash = with_reals(hash, at->mass, 4);
     hash = with_real(hash, at->potential_energy);
     for (int i = 0; i < N; i++) {
         hash = with_reals(hash, at->C[i], N);
@@ -88,7 +88,7 @@ static uint64_t with_evaluation(uint64_t hash, const mct_evaluation *at)
     hash = with_reals(hash, at->tau, N);
     hash = with_reals(hash, at->acceleration, N);
     hash = with_real(hash, at->current);
-    hash = with_reals(hash, &at->constraint_force[0][0], 3 * MCT_MAX_PARTICLES);
+    hash = with_reals(hash, &at->constraint_force[0][0], 3 * 4);
     hash = with_real(hash, at->power_input);
     hash = with_real(hash, at->power_viscous);
     hash = with_real(hash, at->power_coulomb);

@@ -38,7 +38,7 @@ static void prepare(const mct_scene *scene)
     mct_message_clear(&why);
     if (mct_plant_init(&plant, scene, &why) == MCT_OK && scene->substeps <= 100) {
         mct_plant_step(&plant, 1);
-        for (int i = 0; i < 2 * plant.system->coordinate_count; i++) {
+        for (int i = 0; i < plant.states; i++) {
             FUZZ_RULE(isfinite(mct_plant_value(&plant, i)), "a plant's state stays finite");
         }
     }

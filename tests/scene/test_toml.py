@@ -70,7 +70,7 @@ def same(kind, mine, value):
         return isinstance(value, float) and same_number(mine, value)
     if kind == "text":
         return isinstance(value, str) and bytes.fromhex(mine) == value.encode()
-    return type(value) is list and len(mine) == len(value) and all(map(same_number, mine, map(float, value)))
+    return type(value) is list and len(mine) == len(value) and all(same(*m, v) for m, v in zip(mine, value))
 
 
 def check(document, answer):
@@ -106,6 +106,7 @@ VALID = [
     b"[a]\nb = [1,]", b"[a]\nb = [\n1, # x\n\r\n 2.5\n,\n]\nc=1",
     b"[a]\nb = [-0, -0.0, +1, 0x1F, nan, -inf]", b"[a]\nb = 0\nc = -0\nd = +0\ne = -0.0\nf = 0e0",
     b"[a]\nb = 1_000\nc = 0xdead_beef\nd = 0o17\ne = 0b1_0\nf = 1_0.0_1e1_0",
+    b"[a]\nb = ['c', \"d,]\", true]", b"[a]\nb = [[1], []]", b"[a]\nb = [['x', 1.5], # c\n [2,],\n]",
     b"[a]\nb = inf\nc = +inf\nd = -inf\ne = nan\nf = -nan",
     b"[a]\nb = 9223372036854775807\nc = -9223372036854775808",
     b"[a]\nb = 1e400\nc = 1e-400\nd = 4.9e-324\ne = 1E+05", b"[a]\nb = \"\\u0000\"", b"[a]\nb = 1#c",
@@ -114,7 +115,7 @@ OUTSIDE_THE_SUBSET = [
     b"a = 1", b"[a.b]", b"[[a]]", b"['a']", b"[\"a\"]", b"[a]\n'b' = 1", b"[a]\n\"b\" = 1", b"[a]\nb.c = 1",
     b"a.b.c = 1", b"[a]\nb = 1979-05-27", b"[a]\nb = 1979-05-27T07:32:00Z", b"[a]\nb = 1979-05-27 07:32:00",
     b"[a]\nb = 07:32:00", b"[a]\nb = {}", b"[a]\nb = {c = 1}", b"[a]\nb = \"\"\"c\"\"\"",
-    b"[a]\nb = '''c\nd'''", b"[a]\nb = ['c']", b"[a]\nb = [true]", b"[a]\nb = [[1]]",
+    b"[a]\nb = '''c\nd'''", b"[a]\nb = [[[1]]]", b"[a]\nb = [{}]",
     b"[a]\nb = [1979-05-27]", b"[a]\nb = 9223372036854775808", b"[a]\nb = 0xFFFFFFFFFFFFFFFF",
 ]
 INVALID = [
@@ -186,9 +187,13 @@ def random_document(pick):
                 value = "'" + "".join(pick.choices(LITERAL, k=pick.randrange(8))) + "'"
             elif kind == 3:
                 gap = lambda: pick.choice(["", " ", newline, " # c" + newline])
-                numbers = [gap() + random_number(pick) + gap() for _ in range(pick.randrange(6))]
-                comma = "," if numbers and pick.random() < 0.3 else ""
-                value = "[" + ",".join(numbers) + comma + gap() + "]"
+
+                def listing(make):
+                    items = [gap() + make() + gap() for _ in range(pick.randrange(6))]
+                    return "[" + ",".join(items) + ("," if items and pick.random() < 0.3 else "") + gap() + "]"
+
+                item = lambda: random_number(pick) if pick.random() < 0.8 else pick.choice(["'a,'", "true", '"]"'])
+                value = listing(item) if pick.random() < 0.6 else listing(lambda: listing(item))
             else:
                 value = random_number(pick)
             text += f"{blank()}{key}{blank()}={blank()}{value}{end()}"
@@ -272,7 +277,7 @@ def test_numbers_have_the_bits_that_python_gives_them(dump):
     numbers = [number if "." in number or "e" in number else number + ".0" for number in numbers]
     lists = [",".join(numbers[i:i + 100]) for i in range(0, len(numbers), 100)]
     documents = [f"[a]\nb = [{numbers}]".encode() for numbers in lists]
-    read = [value for answer in dump(documents) for value in answer["entries"][0][3]]
+    read = [value for answer in dump(documents) for _, value in answer["entries"][0][3]]
     assert len(read) == len(numbers)
     wrong = [(number, mine) for number, mine in zip(numbers, read) if mine != bits(float(number))]
     assert not wrong, wrong[:3]

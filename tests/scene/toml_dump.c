@@ -1,7 +1,7 @@
 /*
  * Helper of test_toml.py: reads documents from stdin, each "LENGTH\n" and that many bytes, and writes what
  * the reader makes of each as lines of JSON: {"ok": ..., "message": ..., "tables": [...], "entries": [[table,
- * key, kind, value], ...]}. Reals are written as the hexadecimal of their bits, texts as the hexadecimal of
+ * key, kind, value], ...]}. Items of a list are [kind, value]. Reals are written as the hexadecimal of their bits, texts as the hexadecimal of
  * their bytes.
  */
 #include <inttypes.h>
@@ -12,7 +12,6 @@
 
 static char text[MCT_TOML_LENGTH];
 static char decoded[MCT_TOML_LENGTH];
-static double values[MCT_TOML_LENGTH / 2];
 static mct_toml toml;
 
 static void print_bytes(const char *bytes, size_t length)
@@ -31,11 +30,11 @@ static void print_bits(double value)
     printf("\"%016" PRIx64 "\"", bits);
 }
 
-static void print_entry(const mct_toml_entry *entry)
+/* The value behind its kind; a list is one of such pairs. */
+static void print_value(const mct_toml_entry *entry)
 {
     static const char *const kinds[] = {"integer", "real", "boolean", "text", "list"};
-    printf("[\"%.*s\", \"%.*s\", \"%s\", ", (int)entry->table.length, entry->table.start,
-           (int)entry->key.length, entry->key.start, kinds[entry->kind]);
+    printf("\"%s\", ", kinds[entry->kind]);
     if (entry->kind == MCT_TOML_INTEGER || entry->kind == MCT_TOML_BOOLEAN) {
         printf("%" PRId64, entry->integer);
     } else if (entry->kind == MCT_TOML_REAL) {
@@ -43,14 +42,23 @@ static void print_entry(const mct_toml_entry *entry)
     } else if (entry->kind == MCT_TOML_TEXT) {
         print_bytes(decoded, mct_toml_text(entry, decoded, sizeof decoded));
     } else {
-        const int32_t count = mct_toml_list(entry, values, (int32_t)(sizeof values / sizeof values[0]));
+        size_t position = 0;
+        mct_toml_entry item;
         putchar('[');
-        for (int32_t i = 0; i < count; i++) {
-            fputs(i > 0 ? ", " : "", stdout);
-            print_bits(values[i]);
+        for (int32_t i = 0; mct_toml_item(entry, &position, &item); i++) {
+            fputs(i > 0 ? ", [" : "[", stdout);
+            print_value(&item);
+            putchar(']');
         }
         putchar(']');
     }
+}
+
+static void print_entry(const mct_toml_entry *entry)
+{
+    printf("[\"%.*s\", \"%.*s\", ", (int)entry->table.length, entry->table.start, (int)entry->key.length,
+           entry->key.start);
+    print_value(entry);
     putchar(']');
 }
 

@@ -72,8 +72,7 @@ static void keep(const quad *x, int sample)
 static double stepper_error(mct_scene scene, int stepper, const char *what, bool driven)
 {
     scene.stepper = stepper;
-    const double error =
-        error_of(&scene, mct_state_count(mct_systems[scene.system], mct_scene_effects(&scene)), driven);
+    const double error = error_of(&scene, mct_state_count(&scene), driven);
     printf("%-44s %-6s %.2e\n", what, mct_steppers[stepper].name, error);
     return error;
 }

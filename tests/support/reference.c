@@ -40,7 +40,7 @@ enum {
 reference_model reference_of(const mct_scene *scene)
 {
     reference_model model = {.system = scene->system, .effects = mct_scene_effects(scene)};
-    model.states = mct_state_count(mct_systems[scene->system], model.effects);
+    model.states = mct_state_count(scene);
     for (int i = 0; i < MCT_MAX_PARAMETERS; i++) {
         model.p[i] = scene->parameters[i];
     }

@@ -58,3 +58,11 @@ double angle_size(double angle)
 {
     return fabs(remainder(angle, 6.283185307179586));
 }
+
+int suiting_stepper(int stepper, int system, uint32_t effects)
+{
+    do {
+        stepper++;
+    } while (stepper < MCT_STEPPER_COUNT && mct_systems[system]->kernel(stepper, effects) == NULL);
+    return stepper;
+}

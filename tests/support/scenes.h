@@ -11,6 +11,12 @@ enum { CART_POLE, REACTION_WHEEL, CENTRAL_SYSTEMS }; /* as in mct_systems; those
 /* Defaults of a system, with this stepper and these effects; checked at use, not here. */
 mct_scene scene_of(int system, int stepper, uint32_t effects);
 
+/* The next stepper behind `stepper` that suits a system with these effects; MCT_STEPPER_COUNT behind the last. */
+int suiting_stepper(int stepper, int system, uint32_t effects);
+#define FOR_EACH_STEPPER(stepper, system, effects)                                        \
+    for (int stepper = suiting_stepper(-1, system, effects); stepper < MCT_STEPPER_COUNT; \
+         stepper = suiting_stepper(stepper, system, effects))
+
 /* A parameter by its name; fails the test when there is none. */
 double *parameter_of(mct_scene *scene, const char *name);
 

@@ -336,7 +336,7 @@ static void print_system(const mct_system *system)
 {
     printf("%s: %s (source %s)\n", system->name, system->doc, system->source);
     print_heading("[initial]");
-    for (int i = 0; i < mct_state_count(system, system->effects); i++) {
+    for (int i = 0; i < mct_most_states(system); i++) {
         print_quantity(mct_state_field(system, i));
     }
     print_heading("[parameters]");

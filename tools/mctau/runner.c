@@ -48,14 +48,14 @@ static mct_status runner_mct(const mct_scene *scene, const run_options *options,
     plant.input = input_of(scene, options, input, plant.bound);
     mct_plant_evaluate(&plant, &at);
     const mct_system *system = plant.system;
-    result->states = mct_state_count(system, plant.effects);
+    result->states = mct_state_count(scene);
     for (int i = 0; i < result->states; i++) {
         const mct_field *field = mct_state_field(system, i);
         result->names[i] = field->name;
         result->units[i] = field->unit;
         result->state[i] = mct_plant_value(&plant, i);
     }
-    result->coordinates = system->coordinate_count;
+    result->coordinates = mct_coordinate_count(scene);
     for (int i = 0; i < result->coordinates; i++) {
         for (int j = 0; j < result->coordinates; j++) {
             result->M[i][j] = (double)at.M[i][j];
@@ -65,7 +65,7 @@ static mct_status runner_mct(const mct_scene *scene, const run_options *options,
         result->tau[i] = (double)at.tau[i];
         result->acceleration[i] = (double)at.acceleration[i];
     }
-    result->particles = system->particle_count;
+    result->particles = mct_particle_count(scene);
     for (int i = 0; i < result->particles; i++) {
         result->particle_names[i] = system->particle_names[i];
         result->mass[i] = (double)at.mass[i];

@@ -19,7 +19,7 @@
 #include "mctau/status.h"
 
 #define RUNNER_MAX_STATES      16
-#define RUNNER_MAX_COORDINATES 8
+#define RUNNER_MAX_COORDINATES 16
 #define RUNNER_MAX_PARTICLES   32
 #define RUNNER_MAX_FAULTS      16
 

@@ -70,7 +70,7 @@ static const mct_plant *plant_of(const drive_run *self)
 
 static int states_of(const drive_run *self)
 {
-    return mct_state_count(plant_of(self)->system, plant_of(self)->effects);
+    return plant_of(self)->states;
 }
 
 /* --- CSV --- */

@@ -337,7 +337,7 @@ static bool has_tick_shape(const replay *self)
     enum { COUNTS_AT = 8 + 3 * 8 }; /* behind the type's hash, utime, sequence and tick */
     const mct_system *system = mct_systems[self->scene.system];
     const mctau_tick_t shape = {.coordinates = system->coordinate_count,
-                                .states = mct_state_count(system, mct_scene_effects(&self->scene)),
+                                .states = mct_state_count(&self->scene),
                                 .encoders = mct_encoder_count(system),
                                 .estimates = 2 * mct_encoder_count(system)};
     const uint8_t *data = self->log.data;

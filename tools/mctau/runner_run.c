@@ -160,7 +160,7 @@ static void write_headers(run *self)
     size_t used = 0;
     const mct_system *system = self->reader.system;
     used = add(line, used, sizeof line, "time");
-    for (int i = 0; self->plant != NULL && i < mct_state_count(system, self->reader.effects); i++) {
+    for (int i = 0; self->plant != NULL && i < self->reader.states; i++) {
         used = add(line, used, sizeof line, mct_state_field(system, i)->name);
     }
     for (int i = 0; self->loop.controlled && i < 2 * mct_encoder_count(system); i++) {
@@ -178,7 +178,7 @@ static void write_row(run *self, const mct_record *record)
     const mct_system *system = self->reader.system;
     size_t used = (size_t)snprintf(line, sizeof line, "%.17g", (double)record->tick * self->scene->dt);
     self->reader.state = record->plant;
-    for (int i = 0; self->plant != NULL && i < mct_state_count(system, self->reader.effects); i++) {
+    for (int i = 0; self->plant != NULL && i < self->reader.states; i++) {
         used = add_number(line, used, sizeof line, mct_plant_value(&self->reader, i));
     }
     for (int i = 0; self->loop.controlled && i < 2 * mct_encoder_count(system); i++) {
@@ -421,6 +421,7 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
     self->least_deviation = MCT_REAL_MAX;
     self->reader.system = system;
     self->reader.effects = mct_scene_effects(scene);
+    self->reader.states = mct_state_count(scene);
     mct_status status = choose_hal(self, &hal, why);
     if (status != MCT_OK) {
         return status;
@@ -492,7 +493,7 @@ static void fill_state(const run *self, run_result *result)
 {
     const mct_system *system = self->reader.system;
     /* What nobody simulates and nobody estimates is not known. */
-    result->states = self->plant != NULL     ? mct_state_count(system, self->reader.effects)
+    result->states = self->plant != NULL     ? self->reader.states
                      : self->loop.controlled ? 2 * mct_encoder_count(system)
                                              : 0;
     for (int i = 0; i < result->states; i++) {
