@@ -108,4 +108,32 @@ mct_status mct_gauss_kinematics(const mct_gauss_system *self, mct_real time, con
 mct_status mct_gauss_dynamics(const mct_gauss_system *self, const mct_real *force, const mct_real *couple,
                               mct_gauss_workspace *workspace, mct_gauss_motion *motion);
 
+/**
+ * C from the derivatives of M, in two of its forms; for constraints without explicit time both give C v of
+ * (227).
+ */
+typedef struct {
+    /** [k][i][j] is dM_ij/dq_k, symmetric in i and j */
+    mct_real M_by[MCT_GAUSS_MAX_COORDINATES][MCT_GAUSS_MAX_COORDINATES][MCT_GAUSS_MAX_COORDINATES];
+    /**
+     * Christoffel's: C_ij = sum_k (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) v_k / 2, so that Mdot - 2 C is skew
+     */
+    mct_real C[MCT_GAUSS_MAX_COORDINATES][MCT_GAUSS_MAX_COORDINATES];
+    /** that of (228), (229): C_ij = sum_k (dM_ij/dq_k - dM_jk/dq_i / 2) v_k */
+    mct_real C_alternative[MCT_GAUSS_MAX_COORDINATES][MCT_GAUSS_MAX_COORDINATES];
+} mct_gauss_lagrange;
+
+/**
+ * The Lagrangian's form of C (3.0.3), after mct_gauss_kinematics() with the same arguments.
+ *
+ * Christoffel's choice is J'm Jdot, the C of mct_gauss_motion, where time does not enter: that one comes from
+ * the motion, this one from M alone. With explicit time both leave out what time adds to C v. Corrections to
+ * the source: (228) has one rate too many, and (229) is not J'm Jdot, though it gives the same C v.
+ *
+ * @return MCT_ERROR_NOT_FINITE (a second derivative of h, or a rate); `form` is then undefined. Cost: place()
+ *         is called coordinate_count^2 times. Thread-safe as above; mct_gauss_dynamics() may follow as well.
+ */
+mct_status mct_gauss_christoffel(const mct_gauss_system *self, mct_real time, const mct_real *q,
+                                 const mct_real *v, mct_gauss_workspace *workspace, mct_gauss_lagrange *form);
+
 #endif

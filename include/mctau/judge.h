@@ -9,14 +9,17 @@
 #include "mctau/gauss.h"
 #include "mctau/system.h"
 
-/** What the engine finds, and room for it: some 25 KiB in double. */
+/** What the engine finds, and room for it: some 40 KiB in double. */
 typedef struct {
     mct_gauss_motion motion; /**< as the engine numbers particles: those with mass */
     int32_t particle_count;
     int32_t particle[MCT_MAX_PARTICLES]; /**< number in the system of each that the engine has */
     mct_real mass[MCT_MAX_PARTICLES];
-    mct_real couple[MCT_GAUSS_MAX_COORDINATES]; /**< tau - J'f: friction of joints, torques between bodies [N m] */
-    mct_gauss_workspace workspace;              /**< private */
+    mct_gauss_lagrange
+        lagrange; /**< C from the derivatives of M; 0 of a system with a rotation, whose M has none */
+    mct_real
+        couple[MCT_GAUSS_MAX_COORDINATES]; /**< tau - J'f: friction of joints, torques between bodies [N m] */
+    mct_gauss_workspace workspace;         /**< private */
 } mct_judgement;
 
 /**

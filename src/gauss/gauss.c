@@ -32,20 +32,20 @@ static mct_status check(const mct_gauss_system *self)
 }
 
 /**
- * Evaluates h with the motion (v, 1) as the first direction, and as the second either coordinate `column`
- * alone or, for column = coordinate_count, the motion again.
+ * Evaluates h with (time_rate, rate) as the first direction, and as the second either coordinate `column`
+ * alone or, for column = coordinate_count, the first one again.
  */
-static void place(const mct_gauss_system *self, mct_real time, const mct_real *q, const mct_real *v,
-                  int column, mct_hyperdual (*position)[3])
+static void place(const mct_gauss_system *self, mct_real time, const mct_real *q, mct_real time_rate,
+                  const mct_real *rate, int column, mct_hyperdual (*position)[3])
 {
     const mct_real one = MCT_R(1.0);
     const mct_real zero = MCT_R(0.0);
-    const bool along_motion = column == self->coordinate_count;
-    const mct_hyperdual now = {time, one, along_motion ? one : zero, zero};
+    const bool again = column == self->coordinate_count;
+    const mct_hyperdual now = {time, time_rate, again ? time_rate : zero, zero};
     mct_hyperdual coordinate[MCT_GAUSS_MAX_COORDINATES];
     for (int j = 0; j < self->coordinate_count; j++) {
         const mct_real alone = j == column ? one : zero;
-        coordinate[j] = (mct_hyperdual){q[j], v[j], along_motion ? v[j] : alone, zero};
+        coordinate[j] = (mct_hyperdual){q[j], rate[j], again ? rate[j] : alone, zero};
     }
     self->place(self->context, now, coordinate, position);
 }
@@ -71,14 +71,14 @@ mct_status mct_gauss_kinematics(const mct_gauss_system *self, mct_real time, con
     const int rows = 3 * self->particle_count;
     const int columns = self->coordinate_count;
     for (int j = 0; j < columns; j++) {
-        place(self, time, q, v, j, workspace->position);
+        place(self, time, q, MCT_R(1.0), v, j, workspace->position);
         for (int row = 0; row < rows; row++) {
             const mct_hyperdual x = workspace->position[row / 3][row % 3];
             workspace->J[row * columns + j] = x.e2;
             workspace->J_rate[row * columns + j] = x.e12;
         }
     }
-    place(self, time, q, v, columns, workspace->position);
+    place(self, time, q, MCT_R(1.0), v, columns, workspace->position);
     bool finite = true;
     for (int row = 0; row < rows; row++) {
         const mct_hyperdual x = workspace->position[row / 3][row % 3];
@@ -138,4 +138,47 @@ mct_status mct_gauss_dynamics(const mct_gauss_system *self, const mct_real *forc
         motion->acceleration[j] = a[j];
     }
     return MCT_OK;
+}
+
+mct_status mct_gauss_christoffel(const mct_gauss_system *self, mct_real time, const mct_real *q,
+                                 const mct_real *v, mct_gauss_workspace *workspace, mct_gauss_lagrange *form)
+{
+    const int rows = 3 * self->particle_count;
+    const int columns = self->coordinate_count;
+    const mct_real *const J = workspace->J;
+    mct_real *const J_by_k = workspace->design; /* dJ/dq_k */
+    for (int k = 0; k < columns; k++) {
+        mct_real along[MCT_GAUSS_MAX_COORDINATES] = {MCT_R(0.0)};
+        along[k] = MCT_R(1.0);
+        for (int j = 0; j < columns; j++) {
+            place(self, time, q, MCT_R(0.0), along, j, workspace->position);
+            for (int row = 0; row < rows; row++) {
+                J_by_k[row * columns + j] = workspace->position[row / 3][row % 3].e12;
+            }
+        }
+        for (int i = 0; i < columns; i++) {
+            for (int j = 0; j < columns; j++) {
+                form->M_by[k][i][j] = mass_product(self, J_by_k + i, columns, J + j, columns) +
+                                      mass_product(self, J + i, columns, J_by_k + j, columns);
+            }
+        }
+    }
+    bool finite = true;
+    for (int i = 0; i < columns; i++) {
+        for (int j = 0; j < columns; j++) {
+            mct_real christoffel = MCT_R(0.0);
+            mct_real alternative = MCT_R(0.0);
+            for (int k = 0; k < columns; k++) {
+                const mct_real ij_by_k = form->M_by[k][i][j];
+                const mct_real ik_by_j = form->M_by[j][i][k];
+                const mct_real jk_by_i = form->M_by[i][j][k];
+                christoffel += MCT_R(0.5) * (ij_by_k + ik_by_j - jk_by_i) * v[k];
+                alternative += (ij_by_k - MCT_R(0.5) * jk_by_i) * v[k];
+            }
+            form->C[i][j] = christoffel;
+            form->C_alternative[i][j] = alternative;
+            finite = finite && is_finite(christoffel) && is_finite(alternative);
+        }
+    }
+    return finite ? MCT_OK : MCT_ERROR_NOT_FINITE;
 }

@@ -30,7 +30,8 @@ static void turn(mct_attitude attitude, const mct_real *now, const mct_hyperdual
     mct_hyperdual step[4], start[4];
     step[0] = mct_hyperdual_constant(1);
     for (int i = 0; i < 3; i++) {
-        step[0] = mct_hyperdual_sub(step[0], mct_hyperdual_scale(MCT_R(0.125), mct_hyperdual_mul(u[i], u[i])));
+        step[0] =
+            mct_hyperdual_sub(step[0], mct_hyperdual_scale(MCT_R(0.125), mct_hyperdual_mul(u[i], u[i])));
         step[1 + i] = mct_hyperdual_scale(MCT_R(0.5), u[i]);
     }
     for (int i = 0; i < 4; i++) {
@@ -43,7 +44,8 @@ static void turn(mct_attitude attitude, const mct_real *now, const mct_hyperdual
     }
 }
 
-static void place(const void *context, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3])
+static void place(const void *context, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
 {
     const view_t *view = context;
     const mct_system *system = view->system;
@@ -98,6 +100,13 @@ mct_status mct_judge(const mct_system *system, const void *constants, int partic
     mct_status status = mct_gauss_kinematics(&engine, time, q, v, &out->workspace, &out->motion);
     if (status != MCT_OK) {
         return status;
+    }
+    memset(&out->lagrange, 0, sizeof out->lagrange);
+    if (system->attitude == MCT_ATTITUDE_NONE) {
+        status = mct_gauss_christoffel(&engine, time, q, v, &out->workspace, &out->lagrange);
+        if (status != MCT_OK) {
+            return status;
+        }
     }
     /* First without couples, for J'f; tau holds it even where the accelerations are not defined. */
     status = mct_gauss_dynamics(&engine, force, NULL, &out->workspace, &out->motion);

@@ -93,3 +93,11 @@ def test_the_text_for_people_has_units_and_explains_e(mctau, scenes):
     assert done.returncode == 0
     for word in ("kg m^2", "N m", "Gauss", "kinetic", "viscous friction", "rad/s^2"):
         assert word in done.stdout
+
+
+@pytest.mark.parametrize("system", NAMES)
+def test_a_negative_zero_is_0_for_people_and_keeps_its_bits_in_json(mctau, scenes, system):
+    scene = scenes / f"{system}.toml"
+    at_rest = [word for name in NAMES[system][0][:2] for word in ("--set", f"initial.{name}=0")]
+    assert "-0" not in mctau("mct", scene, *at_rest).stdout.split()
+    assert "-0" in mctau("mct", scene, *at_rest, "--json").stdout.replace(",", " ").split()

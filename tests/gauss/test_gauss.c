@@ -535,6 +535,127 @@ static void test_C_plus_its_transpose_is_the_rate_of_the_mass_matrix(void)
     }
 }
 
+/* ---- C from the derivatives of M (3.0.3) ---- */
+
+static void test_the_spring_pendulum_tells_the_two_forms_of_C_apart(void)
+{
+    const mct_real mass[] = {MCT_R(1.2)};
+    const mct_gauss_system system = {1, 2, mass, place_spring_pendulum, NULL};
+    const mct_real q[] = {MCT_R(0.8), MCT_R(1.1)};
+    const mct_real v[] = {MCT_R(-0.6), MCT_R(2.5)};
+    const double m_l = 1.2 * 0.8; /* M = diag(m, m l^2) */
+    const double C[2][2] = {{0, -m_l * 2.5}, {m_l * 2.5, m_l * -0.6}};
+    const double C_alternative[2][2] = {{0, -m_l * 2.5}, {0, 2 * m_l * -0.6}};
+    mct_gauss_lagrange form;
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_kinematics(&system, MCT_R(0.0), q, v, &workspace, &motion));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_christoffel(&system, MCT_R(0.0), q, v, &workspace, &form));
+    for (int i = 0; i < 2; i++) {
+        for (int j = 0; j < 2; j++) {
+            const double by_length = i == 1 && j == 1 ? 2 * m_l : 0;
+            TEST_ASSERT_DOUBLE_WITHIN(NEAR(4), by_length, (double)form.M_by[0][i][j]);
+            TEST_ASSERT_DOUBLE_WITHIN(NEAR(4), 0, (double)form.M_by[1][i][j]);
+            TEST_ASSERT_DOUBLE_WITHIN(NEAR(4), C[i][j], (double)form.C[i][j]);
+            TEST_ASSERT_DOUBLE_WITHIN(NEAR(4), C_alternative[i][j], (double)form.C_alternative[i][j]);
+        }
+    }
+}
+
+static void test_C_from_the_derivatives_of_M_is_that_of_the_motion(void)
+{
+    for (int trial = 0; trial < TRIALS; trial++) {
+        scene s;
+        mct_gauss_lagrange form;
+        make_scene(&s, trial % 2 ? P : 5, trial % 3 ? D : 4, 0.0);
+        TEST_ASSERT_EQUAL_INT(MCT_OK, move_scene(&s));
+        TEST_ASSERT_EQUAL_INT(MCT_OK,
+                              mct_gauss_christoffel(&s.system, MCT_R(0.3), s.q, s.v, &workspace, &form));
+        const int count = s.system.coordinate_count;
+        for (int i = 0; i < count; i++) {
+            double size = 1, by_christoffel = 0, by_alternative = 0;
+            for (int j = 0; j < count; j++) {
+                for (int k = 0; k < count; k++) {
+                    size += fabs((double)form.M_by[k][i][j]) + fabs((double)form.M_by[i][j][k]);
+                }
+                by_christoffel += (double)form.C[i][j] * (double)s.v[j];
+                by_alternative += (double)form.C_alternative[i][j] * (double)s.v[j];
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(NEAR(size), (double)motion.Cv[i], by_christoffel);
+            TEST_ASSERT_DOUBLE_WITHIN(NEAR(size), (double)motion.Cv[i], by_alternative);
+            for (int j = 0; j < count; j++) {
+                double M_rate_less_2C[2] = {-2 * (double)form.C[i][j], -2 * (double)form.C[j][i]};
+                for (int k = 0; k < count; k++) {
+                    M_rate_less_2C[0] += (double)form.M_by[k][i][j] * (double)s.v[k];
+                    M_rate_less_2C[1] += (double)form.M_by[k][j][i] * (double)s.v[k];
+                }
+                TEST_ASSERT_DOUBLE_WITHIN(NEAR(size), (double)motion.C[i][j], (double)form.C[i][j]);
+                TEST_ASSERT_DOUBLE_WITHIN(NEAR(size), -M_rate_less_2C[1], M_rate_less_2C[0]);
+            }
+        }
+    }
+}
+
+/* The base of this chain moves with time: M depends on q all the same. Central differences, as above. */
+static void test_derivatives_of_M_are_those_of_its_differences(void)
+{
+    enum { N = 4 };
+    const double h = MCT_REAL_IS_FLOAT ? 4e-3 : 1e-5;
+    scene s;
+    mct_gauss_lagrange form;
+    make_scene(&s, 5, N, 0.7);
+    TEST_ASSERT_EQUAL_INT(MCT_OK, move_scene(&s));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_christoffel(&s.system, MCT_R(0.3), s.q, s.v, &workspace, &form));
+    for (int k = 0; k < N; k++) {
+        mct_real side[2][MCT_GAUSS_MAX_COORDINATES][MCT_GAUSS_MAX_COORDINATES];
+        for (int which = 0; which < 2; which++) {
+            mct_real q[D];
+            memcpy(q, s.q, sizeof q);
+            q[k] += MCT_R(which == 0 ? -h : h);
+            TEST_ASSERT_EQUAL_INT(MCT_OK, move(&s.system, 0.3, q, s.v, NULL, NULL));
+            memcpy(side[which], motion.M, sizeof motion.M);
+        }
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < N; j++) {
+                const double slope = ((double)side[1][i][j] - (double)side[0][i][j]) / (2 * h);
+                TEST_ASSERT_DOUBLE_WITHIN(100 * h * h + 50 * EPSILON / h, slope, (double)form.M_by[k][i][j]);
+            }
+        }
+    }
+}
+
+static void place_growing_pendulum(const void *context, mct_hyperdual time, const mct_hyperdual *q,
+                                   mct_hyperdual (*position)[3])
+{
+    (void)context;
+    position[0][0] = mct_hyperdual_mul(time, mct_hyperdual_sin(q[0]));
+    position[0][1] = mct_hyperdual_mul(time, mct_hyperdual_cos(q[0]));
+    position[0][2] = mct_hyperdual_constant(MCT_R(0.0));
+}
+
+/* Of length t: M = m t^2 changes with time, not with the angle. */
+static void test_time_does_not_enter_the_derivatives_of_M(void)
+{
+    const mct_real mass[] = {MCT_R(1.2)}, q[] = {MCT_R(0.8)}, v[] = {MCT_R(3.0)};
+    const mct_gauss_system system = {1, 1, mass, place_growing_pendulum, NULL};
+    mct_gauss_lagrange form;
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_kinematics(&system, MCT_R(2.0), q, v, &workspace, &motion));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_gauss_christoffel(&system, MCT_R(2.0), q, v, &workspace, &form));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR(5), 0, (double)form.M_by[0][0][0]);
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR(15), 0, (double)form.C[0][0]);
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR(20), 2 * 1.2 * 2 * 3,
+                              (double)motion.Cv[0]); /* 2 m l ld thd, all of time */
+}
+
+static void test_a_rate_that_is_not_finite_has_no_C(void)
+{
+    scene s;
+    mct_gauss_lagrange form;
+    make_scene(&s, 5, 4, 0.0);
+    TEST_ASSERT_EQUAL_INT(MCT_OK, move_scene(&s));
+    s.v[2] = (mct_real)NAN;
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_NOT_FINITE,
+                          mct_gauss_christoffel(&s.system, MCT_R(0.3), s.q, s.v, &workspace, &form));
+}
+
 static void test_bad_systems_are_refused(void)
 {
     scene s;
@@ -586,6 +707,11 @@ int main(void)
     RUN_TEST(test_mass_matrix_is_symmetric_to_the_bit_and_its_energy_that_of_the_particles);
     RUN_TEST(test_the_matrix_C_times_the_rates_is_the_whole_bias_without_explicit_time);
     RUN_TEST(test_C_plus_its_transpose_is_the_rate_of_the_mass_matrix);
+    RUN_TEST(test_the_spring_pendulum_tells_the_two_forms_of_C_apart);
+    RUN_TEST(test_C_from_the_derivatives_of_M_is_that_of_the_motion);
+    RUN_TEST(test_derivatives_of_M_are_those_of_its_differences);
+    RUN_TEST(test_time_does_not_enter_the_derivatives_of_M);
+    RUN_TEST(test_a_rate_that_is_not_finite_has_no_C);
     RUN_TEST(test_bad_systems_are_refused);
     return UNITY_END();
 }

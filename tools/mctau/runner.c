@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "mctau/input.h"
+#include "mctau/judge.h"
 #include "mctau/plant.h"
 #include "runner_drive.h"
 #include "runner_replay.h"
@@ -34,6 +35,32 @@ static mct_real input_of(const mct_scene *scene, const run_options *options, con
     return wanted > bound ? bound : wanted < -bound ? -bound : wanted;
 }
 
+/* The closed form's judge: knows the geometry, the masses and the forces. */
+static void judge(const mct_plant *plant, const mct_evaluation *at, mct_result *result)
+{
+    mct_judgement judgement;
+    gauss_result *gauss = &result->gauss;
+    memset(&judgement, 0, sizeof judgement);
+    const mct_status status =
+        mct_judge(plant->system, &plant->constants, result->particles, plant->state.x, at, &judgement);
+    gauss->solved = status == MCT_OK;
+    gauss->has_C = gauss->solved && plant->system->attitude == MCT_ATTITUDE_NONE;
+    for (int i = 0; gauss->solved && i < result->coordinates; i++) {
+        gauss->acceleration[i] = (double)judgement.motion.acceleration[i];
+        gauss->couple[i] = (double)judgement.couple[i];
+        for (int j = 0; j < result->coordinates; j++) {
+            gauss->C[i][j] = (double)judgement.lagrange.C_alternative[i][j];
+        }
+    }
+    for (int i = 0; gauss->solved && i < judgement.particle_count; i++) {
+        const int own = judgement.particle[i];
+        for (int axis = 0; axis < 3; axis++) {
+            gauss->velocity[own][axis] = (double)judgement.motion.velocity[i][axis];
+            gauss->constraint_force[own][axis] = (double)judgement.motion.constraint_force[i][axis];
+        }
+    }
+}
+
 static mct_status runner_mct(const mct_scene *scene, const run_options *options, const double *input,
                              mct_result *result, mct_message *why)
 {
@@ -61,6 +88,9 @@ static mct_status runner_mct(const mct_scene *scene, const run_options *options,
             result->M[i][j] = (double)at.M[i][j];
             result->C[i][j] = (double)at.C[i][j];
         }
+        result->coordinate_names[i] = system->coordinates[i].position.name;
+        result->coordinate_units[i] = system->coordinates[i].position.unit;
+        result->rate[i] = system->is_process ? 0 : result->state[mct_rate_index(system) + i];
         result->Cv[i] = (double)at.Cv[i];
         result->tau[i] = (double)at.tau[i];
         result->acceleration[i] = (double)at.acceleration[i];
@@ -71,9 +101,11 @@ static mct_status runner_mct(const mct_scene *scene, const run_options *options,
         result->mass[i] = (double)at.mass[i];
         for (int axis = 0; axis < 3; axis++) {
             result->position[i][axis] = (double)at.position[i][axis];
+            result->force[i][axis] = (double)at.force[i][axis];
             result->constraint_force[i][axis] = (double)at.constraint_force[i][axis];
         }
     }
+    judge(&plant, &at, result);
     result->current = (double)at.current;
     result->input = (double)plant.input;
     result->energy = runner_energies(&at);

@@ -88,11 +88,25 @@ typedef struct {
     mct_message warning;           /* what telemetry goes without; empty when all is well */
 } run_result;
 
+/* Gauss's least-squares problem at a state, solved without the closed form. */
+typedef struct {
+    bool solved; /* else M is singular there, or there is no motion */
+    double acceleration[RUNNER_MAX_COORDINATES];
+    double couple[RUNNER_MAX_COORDINATES]; /* tau - J'f */
+    double velocity[RUNNER_MAX_PARTICLES][3];
+    double constraint_force[RUNNER_MAX_PARTICLES][3];
+    double C[RUNNER_MAX_COORDINATES][RUNNER_MAX_COORDINATES]; /* of (229), from the derivatives of M */
+    bool has_C;
+} gauss_result;
+
 typedef struct {
     int states;
     const char *names[RUNNER_MAX_STATES];
     const char *units[RUNNER_MAX_STATES];
     double state[RUNNER_MAX_STATES];
+    const char *coordinate_names[RUNNER_MAX_COORDINATES];
+    const char *coordinate_units[RUNNER_MAX_COORDINATES];
+    double rate[RUNNER_MAX_COORDINATES];
     int coordinates, particles;
     const char *particle_names[RUNNER_MAX_PARTICLES];
     double M[RUNNER_MAX_COORDINATES][RUNNER_MAX_COORDINATES];
@@ -102,7 +116,9 @@ typedef struct {
     double acceleration[RUNNER_MAX_COORDINATES];
     double mass[RUNNER_MAX_PARTICLES];
     double position[RUNNER_MAX_PARTICLES][3];
+    double force[RUNNER_MAX_PARTICLES][3]; /* from outside */
     double constraint_force[RUNNER_MAX_PARTICLES][3];
+    gauss_result gauss;
     double current;
     double input; /* as applied */
     energies energy;
