@@ -41,4 +41,27 @@
 mct_status mct_least_squares(int rows, int columns, mct_real *design, const mct_real *weight,
                              mct_real *observed, const mct_real *pull, mct_real *estimate);
 
+/**
+ * The same with a ridge: finds the b that minimises ((y - x b)' w (y - x b) + lambda b'b) / 2, and the
+ * residual y - x b, with lambda = ridge tr(x' w x) / columns.
+ *
+ * Where columns depend on each other, to within rounding or altogether, the data do not say how to share
+ * between them; then this is the smallest b that fits, to within about `ridge` of itself. There may be fewer
+ * rows than columns. The b's are compared with each other, so columns should be of comparable units. In
+ * single precision 1e-4 is a good ridge, in double 1e-10. The ridge is another row for each column, so again
+ * no normal equations are formed.
+ *
+ * @param rows      of x, at least 1; rows + columns at most MCT_LEAST_SQUARES_MAX_ROWS
+ * @param design    x, with room for `columns` rows more; used up
+ * @param weight    diagonal of w, with room for as many entries more
+ * @param observed  y, with as much room; becomes the residual, followed by -b
+ * @param ridge     positive
+ * @param estimate  b, columns, out
+ * @return as mct_least_squares(); MCT_ERROR_RANGE for a ridge that is not positive; MCT_ERROR_SINGULAR only
+ *         for an x of zeros or a ridge below (rows epsilon)^2. Source: 8.1; A. E. Hoerl, R. W. Kennard
+ *         (1970).
+ */
+mct_status mct_least_squares_ridge(int rows, int columns, mct_real *design, mct_real *weight,
+                                   mct_real *observed, mct_real ridge, mct_real *estimate);
+
 #endif

@@ -119,3 +119,34 @@ mct_status mct_least_squares(int rows, int columns, mct_real *design, const mct_
     }
     return MCT_OK;
 }
+
+mct_status mct_least_squares_ridge(int rows, int columns, mct_real *design, mct_real *weight,
+                                   mct_real *observed, mct_real ridge, mct_real *estimate)
+{
+    if (rows < 1 || columns < 1) {
+        return MCT_ERROR_ARGUMENT;
+    }
+    const int all = rows + columns;
+    if (rows > MCT_LEAST_SQUARES_MAX_ROWS || columns > MCT_LEAST_SQUARES_MAX_COLUMNS ||
+        all > MCT_LEAST_SQUARES_MAX_ROWS) {
+        return MCT_ERROR_BOUND;
+    }
+    if (!(ridge > MCT_R(0.0))) {
+        return MCT_ERROR_RANGE;
+    }
+    mct_real trace = MCT_R(0.0);
+    for (int j = 0; j < columns; j++) {
+        trace += squared_length(design + j, columns, weight, 0, rows);
+    }
+    if (trace == MCT_R(0.0)) {
+        return MCT_ERROR_SINGULAR;
+    }
+    for (int i = rows; i < all; i++) { /* 0 = b[i - rows], with the weight lambda */
+        for (int j = 0; j < columns; j++) {
+            design[i * columns + j] = i - rows == j ? MCT_R(1.0) : MCT_R(0.0);
+        }
+        weight[i] = ridge * trace / (mct_real)columns;
+        observed[i] = MCT_R(0.0);
+    }
+    return mct_least_squares(all, columns, design, weight, observed, NULL, estimate);
+}

@@ -28,6 +28,7 @@
 #define MCT_ALWAYS MCT_TIMED
 #include "kernels.h"
 #include "mctau/matrix.h"
+#include "mctau/rotation.h"
 #include "mctau/scene.h"
 #include "mctau/sincos.h"
 #include "systems.h"
@@ -129,52 +130,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return MCT_OK;
 }
 
-/* --- vectors --- */
-
-MCT_INLINE mct_real dot(const mct_real *a, const mct_real *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-MCT_INLINE void cross(const mct_real *a, const mct_real *b, mct_real *product)
-{
-    product[0] = a[1] * b[2] - a[2] * b[1];
-    product[1] = a[2] * b[0] - a[0] * b[2];
-    product[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* --- the frame --- */
-
-/* Stumpff's functions of s = |u|^2: c[n] = 1/n! - s/(n+2)! + s^2/(n+4)! ... */
-static void stumpff(mct_real s, mct_real *c)
-{
-    if (s < 4) {
-        c[5] = 0;
-        c[6] = 0;
-        mct_real five = MCT_R(1.0 / 120); /* s^j / (5 + 2 j)!, and the same of 6 */
-        mct_real six = MCT_R(1.0 / 720);
-        for (int j = 1; j <= 10; j++) {
-            c[5] += five;
-            c[6] += six;
-            five *= -s / (mct_real)((4 + 2 * j) * (5 + 2 * j));
-            six *= -s / (mct_real)((5 + 2 * j) * (6 + 2 * j));
-        }
-        c[4] = MCT_R(1.0 / 24) - s * c[6];
-        c[3] = MCT_R(1.0 / 6) - s * c[5];
-        c[2] = MCT_R(0.5) - s * c[4];
-        c[1] = 1 - s * c[3];
-        c[0] = 1 - s * c[2];
-        return;
-    }
-    const mct_real a = mct_sqrt_real(s);
-    mct_sincos(a, &c[1], &c[0]);
-    c[1] /= a;
-    c[2] = (1 - c[0]) / s;
-    c[3] = (1 - c[1]) / s;
-    c[4] = (MCT_R(0.5) - c[2]) / s;
-    c[5] = (MCT_R(1.0 / 6) - c[3]) / s;
-    c[6] = (MCT_R(1.0 / 24) - c[4]) / s;
-}
 
 /* The frame at one time, all in its own axes. */
 typedef struct {
@@ -187,8 +143,8 @@ typedef struct {
 MCT_INLINE void turn_back(const mct_real *u, mct_real c1, mct_real c2, const mct_real *y, mct_real *turned)
 {
     mct_real once[3], twice[3];
-    cross(u, y, once);
-    cross(u, once, twice);
+    mct_cross(u, y, once);
+    mct_cross(u, once, twice);
     for (int i = 0; i < 3; i++) {
         turned[i] = y[i] + (c2 * twice[i] - c1 * once[i]);
     }
@@ -209,15 +165,15 @@ static void frame_about_any_axis(const constants_t *k, mct_real t, frame_t *fram
     mct_real c[7];
     const mct_real *udd = k->angular_acceleration;
     rotation_at(k, t, u, ud);
-    stumpff(dot(u, u), c);
-    const mct_real half_s_rate = dot(u, ud);
+    mct_stumpff(mct_dot(u, u), c);
+    const mct_real half_s_rate = mct_dot(u, ud);
     const mct_real c2_rate = (2 * c[4] - c[3]) * half_s_rate;
     const mct_real c3_rate = (3 * c[5] - c[4]) * half_s_rate;
-    cross(u, ud, p);
-    cross(u, p, up);
-    cross(u, udd, pd);
-    cross(ud, p, udp);
-    cross(u, pd, upd);
+    mct_cross(u, ud, p);
+    mct_cross(u, p, up);
+    mct_cross(u, udd, pd);
+    mct_cross(ud, p, udp);
+    mct_cross(u, pd, upd);
     for (int i = 0; i < 3; i++) {
         frame->angular_velocity[i] = ud[i] - c[2] * p[i] + c[3] * up[i];
         frame->angular_acceleration[i] =
@@ -248,7 +204,7 @@ MCT_INLINE void frame_at(const constants_t *k, unsigned effects, mct_real t, fra
 /* w: angular velocity of the frame; out: velocity in space, in the frame's axes. */
 MCT_INLINE void space_velocity(const mct_real *w, const mct_real *x, mct_real *out)
 {
-    cross(w, x, out);
+    mct_cross(w, x, out);
     for (int i = 0; i < N; i++) {
         out[i] += x[N + i];
     }
@@ -265,27 +221,27 @@ MCT_INLINE void accelerate(const constants_t *k, unsigned effects, const frame_t
     }
     *drag_rate = 0;
     if (effects & MCT_CENTRIFUGAL) {
-        cross(w, x, along);
-        cross(w, along, across);
+        mct_cross(w, x, along);
+        mct_cross(w, along, across);
         for (int i = 0; i < N; i++) {
             a[i] -= across[i];
         }
     }
     if (effects & MCT_CORIOLIS) {
-        cross(w, x + N, along);
+        mct_cross(w, x + N, along);
         for (int i = 0; i < N; i++) {
             a[i] -= 2 * along[i];
         }
     }
     if (effects & MCT_EULER_FORCE) {
-        cross(frame->angular_acceleration, x, along);
+        mct_cross(frame->angular_acceleration, x, along);
         for (int i = 0; i < N; i++) {
             a[i] -= along[i];
         }
     }
     if (effects & MCT_DRAG) {
         space_velocity(w, x, along);
-        *drag_rate = k->drag_by_mass * mct_sqrt_real(dot(along, along));
+        *drag_rate = k->drag_by_mass * mct_sqrt_real(mct_dot(along, along));
         for (int i = 0; i < N; i++) {
             a[i] -= *drag_rate * along[i];
         }
@@ -330,9 +286,9 @@ MCT_INLINE void kick(const constants_t *k, unsigned effects, mct_real t, const m
         a[i] *= k->step.h;
         b[i] = 2 * share * k->step.h * frame.angular_velocity[i];
     }
-    const mct_real inverse = 1 / (d * d + dot(b, b));
-    const mct_real along = dot(b, a) / d;
-    cross(b, a, turned);
+    const mct_real inverse = 1 / (d * d + mct_dot(b, b));
+    const mct_real along = mct_dot(b, a) / d;
+    mct_cross(b, a, turned);
     for (int i = 0; i < N; i++) {
         dx[N + i] = inverse * (d * a[i] - turned[i] + along * b[i]);
     }
@@ -360,8 +316,8 @@ MCT_INLINE void turn_on(const constants_t *k, mct_real t, const mct_real *y, mct
     if (k->has_fixed_axis) {
         mct_real s, c, once[3], twice[3];
         mct_sincos(k->step.half * (k->spin + (t + k->step.half) * k->spin_rate), &s, &c); /* half the angle */
-        cross(k->axis, y, once);
-        cross(k->axis, once, twice);
+        mct_cross(k->axis, y, once);
+        mct_cross(k->axis, once, twice);
         for (int i = 0; i < 3; i++) {
             turned[i] = 2 * s * (s * twice[i] - c * once[i]);
         }
@@ -369,10 +325,10 @@ MCT_INLINE void turn_on(const constants_t *k, mct_real t, const mct_real *y, mct
     }
     mct_real u[3], ud[3], c[7], space[3];
     rotation_at(k, t, u, ud);
-    stumpff(dot(u, u), c);
+    mct_stumpff(mct_dot(u, u), c);
     turn_back(u, -c[1], c[2], y, space); /* r0 y */
     rotation_at(k, t + k->step.h, u, ud);
-    stumpff(dot(u, u), c);
+    mct_stumpff(mct_dot(u, u), c);
     turn_back(u, c[1], c[2], space, turned);
     for (int i = 0; i < 3; i++) {
         turned[i] -= y[i];
@@ -407,8 +363,8 @@ MCT_INLINE void flow(const constants_t *k, unsigned effects, const mct_real *x, 
     for (int i = 0; i < N; i++) {
         dx[i] += path[i];
     }
-    cross(turn, x, turned);
-    cross(end.angular_velocity, dx, path);
+    mct_cross(turn, x, turned);
+    mct_cross(end.angular_velocity, dx, path);
     for (int i = 0; i < N; i++) {
         dx[N + i] += gain[i] - turned[i] - path[i];
     }
@@ -428,14 +384,14 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     *out = (mct_evaluation){0};
     frame_about_any_axis(k, x[TIME], &frame);
     rotation_at(k, x[TIME], rotation, rotation_rate);
-    stumpff(dot(rotation, rotation), c);
+    mct_stumpff(mct_dot(rotation, rotation), c);
     w = frame.angular_velocity;
     accelerate(k, effects | (k->is_pushed ? MCT_GRAVITY : 0), &frame, x, out->acceleration, &drag_rate);
     space_velocity(w, x, z);
-    cross(w, x, term);
-    cross(w, term, centrifugal);
-    cross(frame.angular_acceleration, x, euler);
-    cross(w, x + N, term);
+    mct_cross(w, x, term);
+    mct_cross(w, term, centrifugal);
+    mct_cross(frame.angular_acceleration, x, euler);
+    mct_cross(w, x + N, term);
     mct_real missing[3], space[3], weight[3] = {0, -k->mass * k->gravity, 0}, force[3];
     for (int i = 0; i < N; i++) {
         const mct_real kept = ((effects & MCT_CENTRIFUGAL) ? centrifugal[i] : 0) +
@@ -463,11 +419,11 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     for (int i = 0; i < N; i++) {
         out->force[0][i] = k->force[i] + weight[i] - k->mass * drag_rate * space[i];
     }
-    out->kinetic_energy = MCT_R(0.5) * k->mass * dot(z, z);
+    out->kinetic_energy = MCT_R(0.5) * k->mass * mct_dot(z, z);
     out->potential_energy = -weight[1] * out->position[0][1];
-    out->power_input = dot(force, z);
-    out->power_viscous = -k->mass * drag_rate * dot(z, z);
-    out->power_base = dot(missing, z);
+    out->power_input = mct_dot(force, z);
+    out->power_viscous = -k->mass * drag_rate * mct_dot(z, z);
+    out->power_base = mct_dot(missing, z);
 }
 
 static mct_hyperdual product(mct_hyperdual a, mct_hyperdual b)
@@ -499,7 +455,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
         u[i] = product(time, mean);
         s = mct_hyperdual_add(s, product(u[i], u[i]));
     }
-    stumpff(s.value, c);
+    mct_stumpff(s.value, c);
     const mct_hyperdual c1 = mct_hyperdual_compose(s, c[1], MCT_R(0.5) * (c[3] - c[2]),
                                                    MCT_R(0.25) * (3 * c[5] - 3 * c[4] + c[3]));
     const mct_hyperdual c2 = mct_hyperdual_compose(s, c[2], MCT_R(0.5) * (2 * c[4] - c[3]),

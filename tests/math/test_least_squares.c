@@ -213,6 +213,105 @@ static void test_bad_problems_are_refused(void)
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_BOUND, solve(&p, false));
 }
 
+/* ---- with a ridge ---- */
+
+static mct_status solve_with_ridge(problem *self, double ridge)
+{
+    memcpy(self->spent, self->design, sizeof self->spent);
+    memcpy(self->residual, self->observed, sizeof self->residual);
+    return mct_least_squares_ridge(self->rows, self->columns, self->spent, self->weight, self->residual,
+                                   (mct_real)ridge, self->estimate);
+}
+
+/* The minimum: x' w (y - x b) = lambda b. */
+static void test_a_ridge_balances_the_weighted_residual_with_the_estimate(void)
+{
+    for (int s = 0; s < SHAPES - 1; s++) { /* the last one leaves no room for the ridge */
+        problem p;
+        fill(&p, shapes[s][0], shapes[s][1]);
+        double trace = 0;
+        for (int i = 0; i < p.rows * p.columns; i++) {
+            trace += (double)p.weight[i / p.columns] * (double)p.design[i] * (double)p.design[i];
+        }
+        TEST_ASSERT_EQUAL_INT(MCT_OK, solve_with_ridge(&p, 0.01));
+        for (int j = 0; j < p.columns; j++) {
+            double balance = 0.01 * trace / p.columns * (double)p.estimate[j];
+            for (int i = 0; i < p.rows; i++) {
+                balance -= (double)p.weight[i] * (double)p.design[i * p.columns + j] * (double)p.residual[i];
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(64 * EPSILON * weighted_size(&p), 0.0, balance);
+        }
+        for (int i = 0; i < p.rows; i++) {
+            double residual = (double)p.observed[i];
+            double size = 1;
+            for (int j = 0; j < p.columns; j++) {
+                residual -= (double)p.design[i * p.columns + j] * (double)p.estimate[j];
+                size += fabs((double)p.estimate[j]);
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(64 * EPSILON * size, residual, (double)p.residual[i]);
+        }
+        for (int j = 0; j < p.columns; j++) {
+            TEST_ASSERT_DOUBLE_WITHIN(64 * EPSILON * (1 + fabs((double)p.estimate[j])),
+                                      -(double)p.estimate[j], (double)p.residual[p.rows + j]);
+        }
+    }
+}
+
+/*
+ * Hard case 32. y = 3 x_1 - x_2 where column 3 is x_1 + x_2: what b = (3, -1, 0) + t (1, 1, -1) is smallest
+ * for t = -2/3, so (7, -5, 2)/3. A ridge takes lambda over the smallest square of a stretch, here a third of
+ * the trace or more, off it, and roundings of the data are amplified by the root of its inverse at most.
+ */
+static void test_dependent_columns_get_the_smallest_estimate_that_fits(void)
+{
+    const double wanted[] = {7.0 / 3, -5.0 / 3, 2.0 / 3};
+    const double ridge = MCT_REAL_IS_FLOAT ? 1e-4 : 1e-10;
+    problem p;
+    fill(&p, 40, 3);
+    for (int i = 0; i < p.rows; i++) {
+        mct_real *x = p.design + 3 * i;
+        x[2] = x[0] + x[1];
+        p.weight[i] = MCT_R(1.0);
+        p.observed[i] = 3 * x[0] - x[1];
+    }
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_SINGULAR, solve(&p, false));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, solve_with_ridge(&p, ridge));
+    for (int j = 0; j < 3; j++) {
+        TEST_ASSERT_DOUBLE_WITHIN(10 * ridge + 40 * EPSILON / sqrt(ridge), wanted[j], (double)p.estimate[j]);
+    }
+}
+
+static void test_fewer_rows_than_columns_do_with_a_ridge(void)
+{
+    problem p;
+    fill(&p, 1, 2);
+    p.design[0] = 3;
+    p.design[1] = 4;
+    p.observed[0] = 10;
+    const double ridge = MCT_REAL_IS_FLOAT ? 1e-4 : 1e-10;
+    TEST_ASSERT_EQUAL_INT(MCT_OK, solve_with_ridge(&p, ridge));
+    TEST_ASSERT_DOUBLE_WITHIN(2 * ridge, 1.2, (double)p.estimate[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(2 * ridge, 1.6, (double)p.estimate[1]);
+}
+
+static void test_bad_ridges_are_refused(void)
+{
+    problem p;
+    fill(&p, 6, 2);
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, solve_with_ridge(&p, 0));
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, solve_with_ridge(&p, NAN));
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_NOT_FINITE, solve_with_ridge(&p, INFINITY));
+    p.weight[1] = -1;
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, solve_with_ridge(&p, 0.1));
+    fill(&p, ROWS, 2);
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_BOUND, solve_with_ridge(&p, 0.1));
+    p.rows = 0;
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_ARGUMENT, solve_with_ridge(&p, 0.1));
+    fill(&p, 6, 2);
+    memset(p.design, 0, sizeof p.design);
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_SINGULAR, solve_with_ridge(&p, 0.1));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -224,5 +323,9 @@ int main(void)
     RUN_TEST(test_units_of_a_column_do_not_change_its_rank);
     RUN_TEST(test_columns_that_depend_on_each_other_are_reported);
     RUN_TEST(test_bad_problems_are_refused);
+    RUN_TEST(test_a_ridge_balances_the_weighted_residual_with_the_estimate);
+    RUN_TEST(test_dependent_columns_get_the_smallest_estimate_that_fits);
+    RUN_TEST(test_fewer_rows_than_columns_do_with_a_ridge);
+    RUN_TEST(test_bad_ridges_are_refused);
     return UNITY_END();
 }
