@@ -182,6 +182,14 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why);
 
 /**
+ * What a user should be told of a scene that is well: a quaternion whose length is not 1 and is made so.
+ * @param number  0 for the first note
+ * @param note    written: one sentence, "table.key: ..."
+ * @return false when there are no more
+ */
+bool mct_scene_note(const mct_scene *scene, int number, mct_message *note);
+
+/**
  * Draws the parameters of a plant that differs from its model: each parameter that is not known exactly
  * anyhow (gravity, lengths, gear ratio, supply voltage are) is multiplied by 1 + spread * u, u uniform in
  * [-1, 1), a function of (variation_seed, index of the parameter) alone, and kept within its range. The

@@ -222,6 +222,7 @@ static mct_status examine_keys(const mct_scene *scene, const mct_system *system,
 /* --- keys together --- */
 
 #define SMALLEST_QUATERNION 1e-100 /* whose square can still be divided by */
+#define LENGTH_TOLERANCE    1e-8   /* of its square: what eight or more digits make of 1 */
 
 static mct_status examine_effects(const mct_scene *scene, const mct_system *system, mct_blame *blame,
                                   mct_message *sentence)
@@ -482,6 +483,27 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     status = status != MCT_OK ? status : examine_attitude(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_duration(scene, blame, sentence);
     return status;
+}
+
+bool mct_scene_note(const mct_scene *scene, int number, mct_message *note)
+{
+    const mct_system *const system = mct_systems[scene->system];
+    double square = 0;
+    if (system->attitude == MCT_ATTITUDE_NONE || number > 0) {
+        return false;
+    }
+    const int first = mct_rate_index(system) - 4;
+    for (int i = first; i < first + 4; i++) {
+        square += scene->initial[i] * scene->initial[i];
+    }
+    if (mct_abs(square - 1) < LENGTH_TOLERANCE) {
+        return false;
+    }
+    mct_message_clear(note);
+    mct_message_add(note, "initial.attitude: found a quaternion of length ");
+    mct_message_add_number(note, mct_sqrt(square));
+    mct_message_add(note, "; it is taken with length 1");
+    return true;
 }
 
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why)

@@ -54,6 +54,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     constants_t *k = constants;
     const double *p = scene->parameters;
     const double total = p[MASS_1] + p[MASS_2];
+    const bool pushed = scene->effects & MCT_FORCES;
     (void)why;
     k->step = mct_step_of(h);
     k->mass[0] = (mct_real)p[MASS_1];
@@ -62,32 +63,31 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->inverse_mass = (mct_real)(1 / total);
     k->separation = (mct_real)p[SEPARATION];
     for (int i = 0; i < 3; i++) {
-        k->force[0][i] = (mct_real)p[FORCE_1 + i];
-        k->force[1][i] = (mct_real)p[FORCE_2 + i];
+        k->force[0][i] = (mct_real)(pushed ? p[FORCE_1 + i] : 0);
+        k->force[1][i] = (mct_real)(pushed ? p[FORCE_2 + i] : 0);
     }
-    k->acceleration = (mct_real)((p[FORCE_1] + p[FORCE_2]) / total);
+    k->acceleration = (mct_real)(pushed ? (p[FORCE_1] + p[FORCE_2]) / total : 0);
     return MCT_OK;
 }
 
-MCT_INLINE mct_real acceleration(const constants_t *k, mct_real u)
+MCT_INLINE mct_real acceleration(const constants_t *k, unsigned effects, mct_real u)
 {
-    return k->acceleration + k->inverse_mass * u;
+    const mct_real pushed = k->inverse_mass * u;
+    return (effects & MCT_FORCES) ? k->acceleration + pushed : pushed;
 }
 
 MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
                            mct_real *dx)
 {
-    (void)effects;
     dx[0] = x[1];
-    dx[1] = acceleration(constants, u);
+    dx[1] = acceleration(constants, effects, u);
 }
 
 MCT_INLINE void kick(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
     const constants_t *k = constants;
-    (void)effects;
     (void)x;
-    dx[1] = k->step.h * acceleration(k, u);
+    dx[1] = k->step.h * acceleration(k, effects, u);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -133,12 +133,14 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[0][1] = position[0][2] = position[1][1] = position[1][2] = zero;
 }
 
+static const uint32_t switches[] = {MCT_FORCES, 0};
 #define friction mct_no_friction
 
-MCT_KERNELS_0(seed, k->step.remainder, 1, mct_seed(derivative, k, k->step, effects, 1, x, u, dx))
-MCT_KERNELS_0(euler, k->step.remainder, 1, mct_euler(kick, k, k->step, effects, 1, x, u, dx))
-MCT_KERNELS_0(leap, k->step.remainder, 1, mct_leap(kick, k, k->step, effects, 1, x, u, dx))
-MCT_KERNELS_0(rk4, k->step.sixth_remainder, 1, mct_rk4_plain(derivative, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_1(seed, k->step.remainder, 1, MCT_FORCES, mct_seed(derivative, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_1(euler, k->step.remainder, 1, MCT_FORCES, mct_euler(kick, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_1(leap, k->step.remainder, 1, MCT_FORCES, mct_leap(kick, k, k->step, effects, 1, x, u, dx))
+MCT_KERNELS_1(rk4, k->step.sixth_remainder, 1, MCT_FORCES,
+              mct_rk4_plain(derivative, k, k->step, effects, 1, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -148,8 +150,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
         [MCT_STEPPER_LEAP] = leap_kernels,
         [MCT_STEPPER_RK4] = rk4_kernels,
     };
-    static const uint32_t no_switches[] = {0};
-    return mct_switched_kernel_of(kernels, no_switches, stepper, effects);
+    return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }
 
 const mct_system mct_linked_particles = {
@@ -161,6 +162,8 @@ const mct_system mct_linked_particles = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &force_field,
+    .effects = MCT_FORCES,
+    .standard_effects = MCT_FORCES,
     .particle_count = 2,
     .particle_names = particle_names,
     .prepare = prepare,

@@ -31,7 +31,7 @@ static mct_scene linked_particles(int stepper)
     while (system < MCT_SYSTEM_COUNT - 1 && strcmp(mct_systems[system]->name, "linked_particles") != 0) {
         system++;
     }
-    return scene_of(system, stepper, 0);
+    return scene_of(system, stepper, MCT_FORCES);
 }
 
 typedef struct {
@@ -62,7 +62,7 @@ static void run_trial(trial *self, test_random *random)
     self->x[1] = (mct_real)random_in(random, -5, 5);
     self->input = (mct_real)random_in(random, -10, 10);
     TEST_ASSERT_EQUAL_INT(MCT_OK, system->prepare(&self->scene, 1e-3, &self->constants, NULL));
-    system->evaluate(&self->constants, 0, self->x, self->input, &self->out);
+    system->evaluate(&self->constants, MCT_FORCES, self->x, self->input, &self->out);
 
     const mct_real mass[2] = {(mct_real)p[MASS_1], (mct_real)p[MASS_2]};
     const mct_gauss_system engine = {2, 1, mass, system->place, &self->constants};

@@ -118,6 +118,59 @@ static void json_choice_of(json *out, const char *key, const mct_effect *effect,
     }
 }
 
+static void json_choices(json *out, const char *key, const mct_field *field)
+{
+    json_list(out, key);
+    for (int i = 0; choice_name(field, i) != NULL; i++) {
+        json_text(out, NULL, choice_name(field, i));
+    }
+    json_end_list(out);
+}
+
+/* A quantity of a system, or a name. */
+static void json_parameter(json *out, const mct_field *field)
+{
+    if (field->kind != MCT_FIELD_CHOICE) {
+        json_quantity(out, NULL, field);
+        return;
+    }
+    json_object(out, NULL);
+    json_text(out, "name", field->name);
+    json_choices(out, "choices", field);
+    json_text(out, "default", choice_name(field, (int)field->standard));
+    json_text(out, "doc", field->doc);
+    json_end_object(out);
+}
+
+static void json_rows(json *out, const mct_row_list *rows)
+{
+    json_object(out, NULL);
+    json_text(out, "name", rows->name);
+    json_text(out, "doc", rows->doc);
+    json_integer(out, "fewest_rows", rows->fewest_rows);
+    json_integer(out, "most_rows", rows->most_rows);
+    json_list(out, "columns");
+    for (int i = 0; i < rows->column_count; i++) {
+        json_parameter(out, &rows->columns[i]);
+    }
+    json_end_list(out);
+    json_list(out, "default");
+    for (int i = 0; i < rows->standard_rows; i++) {
+        json_list(out, NULL);
+        for (int j = 0; j < rows->column_count; j++) {
+            const double value = rows->standard[i * rows->column_count + j];
+            if (rows->columns[j].kind == MCT_FIELD_CHOICE) {
+                json_text(out, NULL, choice_name(&rows->columns[j], (int)value));
+            } else {
+                json_number(out, NULL, value);
+            }
+        }
+        json_end_list(out);
+    }
+    json_end_list(out);
+    json_end_object(out);
+}
+
 static void json_system(json *out, const mct_system *system)
 {
     json_object(out, NULL);
@@ -140,7 +193,12 @@ static void json_system(json *out, const mct_system *system)
     }
     json_list(out, "parameters");
     for (int i = 0; i < system->parameter_count; i++) {
-        json_quantity(out, NULL, &system->parameters[i]);
+        json_parameter(out, &system->parameters[i]);
+    }
+    json_end_list(out);
+    json_list(out, "lists");
+    for (int i = 0; i < system->list_count; i++) {
+        json_rows(out, &system->lists[i]);
     }
     json_end_list(out);
     json_list(out, "effects");
@@ -166,15 +224,6 @@ static void json_system(json *out, const mct_system *system)
     }
     json_end_list(out);
     json_end_object(out);
-}
-
-static void json_choices(json *out, const char *key, const mct_field *field)
-{
-    json_list(out, key);
-    for (int i = 0; choice_name(field, i) != NULL; i++) {
-        json_text(out, NULL, choice_name(field, i));
-    }
-    json_end_list(out);
 }
 
 static void json_key(json *out, const mct_field *field, const mct_scene *defaults)
@@ -277,8 +326,22 @@ static void print_json(const mct_system *only)
 
 /* --- for people --- */
 
+static void print_choices(const mct_field *field)
+{
+    for (int i = 0; choice_name(field, i) != NULL; i++) {
+        printf("%s %s", i > 0 ? "," : "", choice_name(field, i));
+    }
+    printf("\n");
+}
+
 static void print_quantity(const mct_field *field)
 {
+    if (field->kind == MCT_FIELD_CHOICE) {
+        printf("  %-24s %-8s %12s  %24s %s:", field->name, "", choice_name(field, (int)field->standard),
+               "a name", field->doc);
+        print_choices(field);
+        return;
+    }
     printf("  %-24s %-8s %12g  %10g to %-10g %s\n", field->name, field->unit, field->standard, field->minimum,
            field->maximum, field->doc);
 }
@@ -286,6 +349,34 @@ static void print_quantity(const mct_field *field)
 static void print_heading(const char *title)
 {
     printf("\n%-26s %-8s %12s  %24s\n", title, "unit", "default", "allowed");
+}
+
+static void print_rows(const mct_row_list *rows)
+{
+    printf("\n[parameters] %s: a list of %d to %d %s; %s\n", rows->name, rows->fewest_rows, rows->most_rows,
+           rows->column_count > 1 ? "rows" : "numbers", rows->doc);
+    for (int i = 0; i < rows->column_count; i++) {
+        const mct_field *field = &rows->columns[i];
+        if (field->kind == MCT_FIELD_CHOICE) {
+            print_quantity(field);
+        } else {
+            printf("  %-24s %-8s %12s  %10g to %-10g %s\n", field->name, field->unit, "", field->minimum,
+                   field->maximum, field->doc);
+        }
+    }
+    printf("  default [");
+    for (int i = 0; i < rows->standard_rows * rows->column_count; i++) {
+        const int column = i % rows->column_count;
+        const mct_field *field = &rows->columns[column];
+        printf("%s%s", i > 0 ? ", " : "", column == 0 && rows->column_count > 1 ? "[" : "");
+        if (field->kind == MCT_FIELD_CHOICE) {
+            printf("\"%s\"", choice_name(field, (int)rows->standard[i]));
+        } else {
+            printf("%g", rows->standard[i]);
+        }
+        printf("%s", column == rows->column_count - 1 && rows->column_count > 1 ? "]" : "");
+    }
+    printf("]\n");
 }
 
 static void print_effects(const mct_system *system)
@@ -343,27 +434,48 @@ static void print_system(const mct_system *system)
     for (int i = 0; i < system->parameter_count; i++) {
         print_quantity(&system->parameters[i]);
     }
+    for (int i = 0; i < system->list_count; i++) {
+        print_rows(&system->lists[i]);
+    }
     if (system->actuation != NULL) {
         print_encoders(system);
     }
     print_effects(system);
     print_input(system);
-    printf("Particles:");
+    printf("Particles:%s", system->lists_particles ? " those listed, or else" : "");
     for (int i = 0; i < system->particle_count; i++) {
         printf(" %s", system->particle_names[i]);
     }
     printf("\n");
 }
 
+/* "; for cart_pole, pendulum" or "; not for chain", whichever is shorter; nothing when it suits all. */
+static void print_suited(int stepper)
+{
+    int suited = 0;
+    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+        suited += suits(mct_systems[i], stepper) ? 1 : 0;
+    }
+    const bool shown = 2 * suited < MCT_SYSTEM_COUNT;
+    const char *between = shown ? "; for " : "; not for ";
+    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+        if (suits(mct_systems[i], stepper) == shown) {
+            printf("%s%s", between, mct_systems[i]->name);
+            between = ", ";
+        }
+    }
+}
+
 static void print_steppers(const mct_system *only)
 {
     printf("Steppers (scene.stepper)\n");
     for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+        if (only != NULL && !suits(only, i)) {
+            continue;
+        }
         printf("  %-10s order %d  %s", mct_steppers[i].name, mct_steppers[i].order, mct_steppers[i].doc);
-        for (int j = 0; j < MCT_SYSTEM_COUNT; j++) {
-            if (!suits(mct_systems[j], i) && (only == NULL || only == mct_systems[j])) {
-                printf("; not for %s", mct_systems[j]->name);
-            }
+        if (only == NULL) {
+            print_suited(i);
         }
         printf("\n");
     }
@@ -392,10 +504,7 @@ static void print_key(const mct_field *field, const mct_scene *defaults)
     case MCT_FIELD_CHOICE:
         printf("%-8s %12s  %24s %s:", "",
                field->choices != NULL ? choice_name(field, (int)field->standard) : "", "a name", field->doc);
-        for (int i = 0; choice_name(field, i) != NULL; i++) {
-            printf("%s %s", i > 0 ? "," : "", choice_name(field, i));
-        }
-        printf("\n");
+        print_choices(field);
         return;
     }
 }

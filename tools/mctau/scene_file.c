@@ -164,6 +164,9 @@ int scene_file_read(scene_file *self, const arguments *given)
         exit_code = say_status(status, &why);
     }
     free(text);
+    for (int i = 0; exit_code == 0 && mct_scene_note(&self->scene, i, &why); i++) {
+        say(0, "note: %s", why.text);
+    }
     if (exit_code != 0) {
         scene_file_free(self);
     }
