@@ -75,7 +75,6 @@ void mct_can_socket_regain(mct_can_socket *self)
     }
     self->state = MCT_CAN_UP;
     self->passive = false;
-    self->unacknowledged = false;
     forget_flights(self);
 }
 
@@ -96,9 +95,6 @@ static void note_controller(mct_can_socket *self, uint8_t status)
     if ((status & CAN_ERR_CRTL_RX_OVERFLOW) != 0) {
         mct_can_counted(self->counts, MCT_CAN_COUNT_OVERFLOWED);
     }
-    if ((status & CAN_ERR_CRTL_TX_PASSIVE) != 0) {
-        self->unacknowledged = true; /* what a chip becomes that nobody answers; it need not say more */
-    }
     if (passive && !self->passive) {
         mct_can_counted(self->counts, MCT_CAN_COUNT_ERROR_PASSIVE);
     }
@@ -114,7 +110,6 @@ static void note_error(mct_can_socket *self, const struct can_frame *raw)
     mct_can_counted(self->counts, MCT_CAN_COUNT_ERROR_FRAMES);
     if ((class & CAN_ERR_ACK) != 0 || at_ack_slot) {
         mct_can_counted(self->counts, MCT_CAN_COUNT_NO_ACKNOWLEDGE);
-        self->unacknowledged = true;
     } else if ((class & (CAN_ERR_PROT | CAN_ERR_BUSERROR)) != 0) {
         mct_can_counted(self->counts, MCT_CAN_COUNT_BUS_ERRORS);
     }
@@ -132,7 +127,6 @@ static void note_error(mct_can_socket *self, const struct can_frame *raw)
 
 static void note_confirmation(mct_can_socket *self, uint32_t id)
 {
-    self->unacknowledged = false;
     for (int i = 0; i < self->flight_count; i++) {
         mct_can_flight *flight = &self->flights[i];
         if (flight->id == id && flight->unsent) {
@@ -166,11 +160,8 @@ bool mct_can_socket_take(mct_can_socket *self, const struct can_frame *raw, int 
         note_confirmation(self, raw->can_id);
         return false;
     }
-    if ((flags & MSG_DONTROUTE) == 0) { /* from the bus: it lives, and somebody on it */
-        self->unacknowledged = false;
-        if (self->state == MCT_CAN_BUS_OFF) {
-            mct_can_socket_regain(self);
-        }
+    if (self->state == MCT_CAN_BUS_OFF && (flags & MSG_DONTROUTE) == 0) { /* from the bus: it lives */
+        mct_can_socket_regain(self);
     }
     if (is_lost(self)) {
         mct_can_counted(self->counts, MCT_CAN_COUNT_SKIPPED);
@@ -200,16 +191,12 @@ mct_can_flight *mct_can_socket_flight(mct_can_socket *self, uint32_t id, bool *i
     return &self->flights[self->flight_count++];
 }
 
-mct_can_link_state mct_can_socket_state(mct_can_socket *self, int64_t now_us)
+mct_can_link_state mct_can_socket_state(const mct_can_socket *self, int64_t now_us)
 {
     bool unsent = false;
     for (int i = 0; i < self->flight_count; i++) {
-        mct_can_flight *flight = &self->flights[i];
-        const int64_t age_us = now_us - flight->since_us;
-        if (age_us > MCT_CAN_FORGET_US && !self->unacknowledged) {
-            flight->unsent = false;
-        }
-        unsent |= flight->unsent && age_us > MCT_CAN_UNSENT_US;
+        const mct_can_flight *flight = &self->flights[i];
+        unsent |= flight->unsent && now_us - flight->since_us > MCT_CAN_UNSENT_US;
     }
     return self->state == MCT_CAN_UP && unsent ? MCT_CAN_UNSENT : self->state;
 }
@@ -549,7 +536,6 @@ static mct_status socket_open(void *context, const mct_can_filter *filters, int 
     self->state = MCT_CAN_UP;
     self->flight_count = 0;
     self->passive = false;
-    self->unacknowledged = false;
     if (!self->name_fits || self->interface[0] == '\0') {
         mct_message_add(why, "found an interface's name \"");
         mct_message_add(why, self->interface);

@@ -7,8 +7,9 @@
  *   back, so that a bus which comes to life again carries one old command of each kind and not a queue. A
  *   frame unsent for MCT_CAN_UNSENT_US makes the link MCT_CAN_UNSENT. Interfaces without an echo of their own
  *   (vcan, some serial adapters) confirm at once, whatever becomes of the frame.
- * - A confirmation can be lost. All are given up when the receive queue has overflowed, and one that is
- *   MCT_CAN_FORGET_US old while the chip has not complained that nobody acknowledges.
+ * - No time ends the wait for a confirmation: a queue that is stuck would get one more old command each time.
+ *   It ends with the link (lost, or a chip that starts anew), and when the receive queue has overflowed, for
+ *   that may have taken the confirmation with it.
  * - Frames of other programs on the same machine are received like those from the bus.
  * - mct_can_frame.time_us is the kernel's stamp of the arrival, on CLOCK_MONOTONIC.
  * - A link that was lost (down, gone, bus-off) is looked after by `tend`: a socket is opened anew on an
@@ -25,11 +26,10 @@
 
 #include "hal/socketcan/transport.h"
 
-#define MCT_CAN_INTERFACE_SIZE 16      /**< of a name with its NUL, as the kernel has it (IFNAMSIZ) */
-#define MCT_CAN_MAX_FLIGHTS    64      /**< identifiers that are confirmed */
-#define MCT_CAN_UNSENT_US      20000   /**< a frame that waits longer makes the link MCT_CAN_UNSENT */
-#define MCT_CAN_FORGET_US      1000000 /**< a confirmation that takes longer was lost */
-#define MCT_CAN_RETRY_US       100000  /**< between attempts to bring a lost link back */
+#define MCT_CAN_INTERFACE_SIZE 16     /**< of a name with its NUL, as the kernel has it (IFNAMSIZ) */
+#define MCT_CAN_MAX_FLIGHTS    64     /**< identifiers that are confirmed */
+#define MCT_CAN_UNSENT_US      20000  /**< a frame that waits longer makes the link MCT_CAN_UNSENT */
+#define MCT_CAN_RETRY_US       100000 /**< between attempts to bring a lost link back */
 
 /** An identifier that has been sent. */
 typedef struct {
@@ -51,11 +51,10 @@ typedef struct {
     int64_t tried_us;         /**< when a lost link was looked at last */
     int flight_count;
     mct_can_flight flights[MCT_CAN_MAX_FLIGHTS];
-    bool passive;        /**< the chip is error-passive */
-    bool unacknowledged; /**< the chip has said that nobody acknowledges, and nobody was heard since */
-    uint32_t dropped;    /**< the kernel's count of frames lost to a full receive queue */
-    int64_t emptied_us;  /**< when the receive queue was seen empty last */
-    bool has_pending;    /**< a frame was read ahead */
+    bool passive;       /**< the chip is error-passive */
+    uint32_t dropped;   /**< the kernel's count of frames lost to a full receive queue */
+    int64_t emptied_us; /**< when the receive queue was seen empty last */
+    bool has_pending;   /**< a frame was read ahead */
     mct_can_frame pending;
 } mct_can_socket;
 
@@ -104,9 +103,8 @@ void mct_can_socket_dropped(mct_can_socket *socket, uint32_t total);
  */
 mct_can_flight *mct_can_socket_flight(mct_can_socket *socket, uint32_t id, bool *is_new);
 
-/** Forgets what was unsent for too long, and tells the state; `now_us` is when the receive queue was found
- * empty. */
-mct_can_link_state mct_can_socket_state(mct_can_socket *socket, int64_t now_us);
+/** The state; `now_us` is when the receive queue was found empty. */
+mct_can_link_state mct_can_socket_state(const mct_can_socket *socket, int64_t now_us);
 
 /** Takes note that the link is lost; or that it is back. */
 void mct_can_socket_lose(mct_can_socket *socket, mct_can_link_state state);

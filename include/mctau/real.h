@@ -37,8 +37,11 @@ typedef double mct_real;
 /** A literal in the core's precision: `MCT_R(0.5)` keeps a float target free of double arithmetic. */
 #define MCT_R(literal) ((mct_real)(literal))
 
-/** A function that must vanish into its caller: a stepper over the right-hand side of one system. */
-#if defined __GNUC__
+/**
+ * A function that must vanish into its caller: a stepper over the right-hand side of one system. With
+ * MCT_OUTLINE the compiler decides: the same numbers, slowly (builds with sanitizers).
+ */
+#if defined __GNUC__ && !defined MCT_OUTLINE
 #define MCT_INLINE static inline __attribute__((always_inline))
 #define MCT_UNROLL _Pragma("GCC unroll 16")
 #else

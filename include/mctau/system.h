@@ -199,7 +199,7 @@ typedef struct mct_system {
     mct_kernel (*kernel)(int stepper, uint32_t effects);
 } mct_system;
 
-#define MCT_SYSTEM_COUNT 10
+#define MCT_SYSTEM_COUNT 15
 /** All systems, in the order in which they are listed. */
 extern const mct_system *const mct_systems[MCT_SYSTEM_COUNT];
 

@@ -147,6 +147,13 @@ static inline void mct_chain_least_squares(int32_t n, const mct_real *g, const m
     }
 }
 
+/* alpha of an update [m^2], for an error of this size; 0 of `inverse`. */
+static inline mct_real mct_chain_ridge(const mct_chain_constants *self, mct_real size)
+{
+    const mct_real from_error = size * (MCT_R(0.5) * size + MCT_R(1e-3) * self->reach);
+    return self->method == MCT_CHAIN_INVERSE ? 0 : self->ridge > 0 ? self->ridge : from_error;
+}
+
 /* Brings all changes within the bound, all alike: their direction stays. */
 static inline void mct_chain_limit(int32_t n, mct_real bound, mct_real *step)
 {
@@ -201,11 +208,7 @@ static inline void mct_chain_step(const mct_chain_constants *self, const mct_cha
             step[k] = gain * size * g[k];
         }
     } else {
-        const mct_real from_error = size * (MCT_R(0.5) * size + MCT_R(1e-3) * self->reach);
-        const mct_real ridge = self->method == MCT_CHAIN_INVERSE ? 0
-                               : self->ridge > 0                 ? self->ridge
-                                                                 : from_error;
-        mct_chain_least_squares(n, g, h, gg, gh, hh, size, ridge, step);
+        mct_chain_least_squares(n, g, h, gg, gh, hh, size, mct_chain_ridge(self, size), step);
     }
     mct_chain_limit(n, self->largest_step, step);
 }

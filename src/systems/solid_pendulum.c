@@ -19,15 +19,11 @@
  */
 #include "mctau/solid_pendulum.h"
 
-#include "../effects/friction1.h"
-#include "../steppers/euler.h"
-#include "../steppers/leap.h"
-#include "../steppers/rk4.h"
-#include "../steppers/seed.h"
-#include "kernels.h"
 #include "mctau/scene.h"
-#include "mctau/sincos.h"
 #include "systems.h"
+
+#define MCT_ALWAYS MCT_HINGE_COSINE
+#include "hinge.h"
 
 typedef mct_solid_pendulum_constants constants_t;
 
@@ -74,86 +70,21 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     const double inertia = mass * ((x * x + y * y) / 12 + d * d);
     const double gravity = (scene->effects & MCT_GRAVITY) ? p[GRAVITY] : 0;
     const double share = 0.28867513459481288; /* 1 / sqrt(12) */
-    k->step = mct_step_of(h);
+    k->hinge = (mct_hinge){
+        .step = mct_step_of(h),
+        .inertia = (mct_real)inertia,
+        .inverse_inertia = (mct_real)(1 / inertia),
+        .cosine_moment = (mct_real)(-mass * gravity * d),
+        .viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? p[FRICTION] : 0),
+        .coulomb = (mct_real)((scene->effects & MCT_COULOMB) ? p[COULOMB] : 0),
+    };
     k->mass = (mct_real)mass;
-    k->inertia = (mct_real)inertia;
-    k->inverse_inertia = (mct_real)(1 / inertia);
     k->gravity = (mct_real)gravity;
-    k->weight_moment = (mct_real)(mass * gravity * d);
-    k->viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? p[FRICTION] : 0);
-    k->coulomb = (mct_real)((scene->effects & MCT_COULOMB) ? p[COULOMB] : 0);
     for (int i = 0; i < PARTICLES; i++) {
         k->along[i] = (mct_real)(i < 2 ? d - share * x : d + share * x);
         k->across[i] = (mct_real)(i % 2 == 0 ? -share * y : share * y);
     }
     return MCT_OK;
-}
-
-/* All torques but dry friction. */
-MCT_INLINE mct_real torque(const constants_t *k, unsigned effects, mct_real c, mct_real w, mct_real u)
-{
-    mct_real sum = u;
-    if (effects & MCT_GRAVITY) {
-        sum -= k->weight_moment * c;
-    }
-    if (effects & MCT_VISCOUS) {
-        sum -= k->viscous * w;
-    }
-    return sum;
-}
-
-MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct_real *x, mct_real s,
-                              mct_real c, mct_real u, mct_real *dx)
-{
-    const constants_t *k = constants;
-    (void)s;
-    dx[0] = x[1];
-    dx[1] = k->inverse_inertia * torque(k, effects, c, x[1], u);
-}
-
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                           mct_real *dx)
-{
-    mct_real s, c;
-    mct_sincos(x[0], &s, &c);
-    derivative_at(constants, effects, x, s, c, u, dx);
-}
-
-/*
- * Velocity increment of a step. Viscous damping is taken at the new rate (`share` 1: euler) or at the mean of both
- * (1/2: leap).
- */
-MCT_INLINE void kick(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real share,
-                     mct_real *dx)
-{
-    mct_real s, c;
-    mct_sincos(x[0], &s, &c);
-    const mct_real impulse = k->step.h * torque(k, effects, c, x[1], u);
-    if (effects & MCT_VISCOUS) {
-        dx[1] = impulse / (k->inertia + k->step.h * share * k->viscous);
-    } else {
-        dx[1] = k->inverse_inertia * impulse;
-    }
-}
-
-MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                              mct_real *dx)
-{
-    kick(constants, effects, x, u, 1, dx);
-}
-
-MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                               mct_real *dx)
-{
-    kick(constants, effects, x, u, MCT_R(0.5), dx);
-}
-
-MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
-{
-    const constants_t *k = constants;
-    (void)effects;
-    (void)u;
-    mct_friction1_correct(k->inertia, k->inverse_inertia, k->coulomb, k->step.h, x[1], dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -163,12 +94,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real w = x[1];
     mct_real s, c;
     mct_sincos(x[0], &s, &c);
-    *out = (mct_evaluation){0};
-    const mct_real smooth = torque(k, effects, c, w, u);
-    const mct_real dry = mct_friction1_force(k->coulomb, w, smooth);
-    out->M[0][0] = k->inertia;
-    out->tau[0] = smooth + dry;
-    out->acceleration[0] = k->inverse_inertia * out->tau[0];
+    mct_hinge_evaluate(&k->hinge, effects, s, c, w, u, out);
     const mct_real a = out->acceleration[0];
     const mct_real mass = MCT_R(0.25) * k->mass;
     for (int i = 0; i < PARTICLES; i++) {
@@ -181,11 +107,6 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         out->constraint_force[i][0] = mass * (-up * a - right * w * w);
         out->constraint_force[i][1] = mass * (right * a - up * w * w + k->gravity);
     }
-    out->kinetic_energy = MCT_R(0.5) * k->inertia * w * w;
-    out->potential_energy = k->weight_moment * s;
-    out->power_input = u * w;
-    out->power_viscous = -k->viscous * w * w;
-    out->power_coulomb = dry * w;
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
@@ -204,27 +125,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     }
 }
 
-#define SWITCHES MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB
-static const uint32_t switches[] = {SWITCHES, 0};
-
-MCT_KERNELS_3(seed, k->step.remainder, 1, SWITCHES, mct_seed(derivative, k, k->step, effects, 1, x, u, dx))
-MCT_KERNELS_3(euler, k->step.remainder, 1, SWITCHES,
-              mct_euler(kick_implicit, k, k->step, effects, 1, x, u, dx))
-MCT_KERNELS_3(leap, k->step.remainder, 1, SWITCHES,
-              mct_leap(kick_symmetric, k, k->step, effects, 1, x, u, dx))
-MCT_KERNELS_3(rk4, k->step.sixth_remainder, 1, SWITCHES,
-              mct_rk4(derivative_at, 0, k, k->step, effects, 1, x, u, dx))
-
-static mct_kernel kernel(int stepper, uint32_t effects)
-{
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels,
-        [MCT_STEPPER_EULER] = euler_kernels,
-        [MCT_STEPPER_LEAP] = leap_kernels,
-        [MCT_STEPPER_RK4] = rk4_kernels,
-    };
-    return mct_switched_kernel_of(kernels, switches, stepper, effects);
-}
+MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB)
 
 const mct_system mct_solid_pendulum = {
     .name = "solid_pendulum",

@@ -4,8 +4,21 @@
 #include "systems.h"
 
 const mct_system *const mct_systems[MCT_SYSTEM_COUNT] = {
-    &mct_cart_pole,   &mct_reaction_wheel, &mct_pendulum,       &mct_spring_pendulum, &mct_linked_particles,
-    &mct_moving_base, &mct_rotating_frame, &mct_solid_pendulum, &mct_block,           &mct_falling_sphere,
+    &mct_cart_pole,
+    &mct_reaction_wheel,
+    &mct_pendulum,
+    &mct_spring_pendulum,
+    &mct_linked_particles,
+    &mct_particle_pendulum,
+    &mct_moving_base,
+    &mct_rotating_frame,
+    &mct_ball_joint,
+    &mct_fixed_axis,
+    &mct_solid_pendulum,
+    &mct_rigid_body,
+    &mct_chain,
+    &mct_block,
+    &mct_falling_sphere,
 };
 
 static const mct_field current_field =

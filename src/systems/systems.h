@@ -12,9 +12,14 @@ extern const mct_system mct_reaction_wheel;
 extern const mct_system mct_pendulum;
 extern const mct_system mct_spring_pendulum;
 extern const mct_system mct_linked_particles;
+extern const mct_system mct_particle_pendulum;
 extern const mct_system mct_moving_base;
 extern const mct_system mct_rotating_frame;
+extern const mct_system mct_ball_joint;
+extern const mct_system mct_fixed_axis;
 extern const mct_system mct_solid_pendulum;
+extern const mct_system mct_rigid_body;
+extern const mct_system mct_chain;
 extern const mct_system mct_block;
 extern const mct_system mct_falling_sphere;
 

@@ -160,6 +160,14 @@ def test_csv_has_one_row_a_tick_with_states_estimates_inputs_mode_and_faults(res
     assert all(row["faults"] == "" for row in rows)
 
 
+def test_every_scene_runs_with_one_row_a_tick(mctau, scenes, tmp_path):
+    for scene in sorted(scenes.glob("*.toml")):
+        done = mctau("run", scene, "--duration", "0.1", "--csv", tmp_path / "run.csv", "--json")
+        assert done.stderr == "", scene
+        assert done.returncode in (0, 1), scene  # 1: not upright yet
+        assert len(read(tmp_path / "run.csv")) == json.loads(done.stdout)["ticks"] > 0, scene
+
+
 def test_csv_does_not_change_a_bit_of_the_run(result, scenes, tmp_path):
     scene = scenes / "cart_pole.toml"
     plain = result("run", scene, "--duration", "3", exit_code=1)

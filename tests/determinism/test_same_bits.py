@@ -39,7 +39,7 @@ def test_every_build_gives_the_golden_bits(built, configuration):
     try:
         found = by_case(built.lines(configuration))
     except FileNotFoundError:
-        pytest.fail(f"{builds.name_of(configuration)} does not build:\n{built.log[-4000:]}")
+        pytest.fail(f"{builds.name_of(configuration)} does not build or run:\n{built.log[-4000:]}")
     golden = by_case(builds.GOLDEN.read_text().splitlines())
     assert found.keys() == golden.keys(), "the golden file has other cases; tests/golden/refresh"
     different = [case for case in golden if found[case] != golden[case]]

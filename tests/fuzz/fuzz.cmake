@@ -3,9 +3,7 @@
 #   fuzz_NAME_smoke   by fuzz/random.c, any compiler; a ctest with label fuzz-smoke, a fixed number of runs
 #   fuzz_NAME         by libFuzzer, where the compiler has it; built by tools/fuzz alone (target mctau_fuzz)
 #
-# Whatever the preset, core and HAL are compiled once more with the sanitizers, but for src/systems: those kernels take
-# half a minute to compile, are the same arithmetic in every run and have tests of their own. They come from the
-# library as the preset has it.
+# Whatever the preset, core and HAL are compiled once more with the sanitizers.
 option(MCTAU_BUILD_FUZZ "Build the fuzz targets' smoke runs" ON)
 set(fuzz_sanitize -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer)
 file(GLOB fuzz_targets CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/fuzz_*.c)
@@ -39,7 +37,7 @@ mctau_fuzz_flags_work(MCTAU_HAVE_LIBFUZZER
 # --- the targets ---
 
 set(fuzz_sources ${MCTAU_CORE_SOURCES} ${MCTAU_HAL_SOURCES})
-list(FILTER fuzz_sources EXCLUDE REGEX "/src/systems/(cart_pole|reaction_wheel)\\.c$|/hal/lcm/")
+list(FILTER fuzz_sources EXCLUDE REGEX "/hal/lcm/")
 list(GET MCTAU_PRECISIONS 0 fuzz_precision)
 mctau_names(${fuzz_precision})
 
@@ -47,7 +45,8 @@ mctau_names(${fuzz_precision})
 function(mctau_fuzz_core name)
     add_library(${name} STATIC EXCLUDE_FROM_ALL ${fuzz_sources} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/can_scenes.c)
     target_compile_options(${name} PRIVATE -O1 ${fuzz_sanitize} ${ARGN})
-    target_compile_definitions(${name} PRIVATE _POSIX_C_SOURCE=200809L MCTAU_HAVE_LCM=${MCTAU_HAVE_LCM})
+    target_compile_definitions(${name} PRIVATE _POSIX_C_SOURCE=200809L MCTAU_HAVE_LCM=${MCTAU_HAVE_LCM}
+        MCT_OUTLINE)
     target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}
         ${PROJECT_BINARY_DIR}/include/${fuzz_precision} ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
     target_link_libraries(${name} PUBLIC ${library})

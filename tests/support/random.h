@@ -5,6 +5,16 @@
 #include <math.h>
 #include <stdint.h>
 
+/*
+ * How many random cases a test tries: of many, a tenth in builds with sanitizers. Those are ten times as slow, and
+ * judge accesses, which do not differ from number to number.
+ */
+#ifdef MCT_TEST_FEWER
+#define TEST_CASES(count) ((count) / 10)
+#else
+#define TEST_CASES(count) (count)
+#endif
+
 typedef struct {
     uint64_t state; /* not 0 */
 } test_random;

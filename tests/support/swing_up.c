@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "support/random.h"
 #include "support/scenes.h"
 #include "unity.h"
 
@@ -56,7 +57,7 @@ swing_up run_swing_up(const mct_scene *scene, double duration, double settled)
 
 void check_variations(int system, bool known)
 {
-    enum { VARIATIONS = 500, ALLOWED_TO_FAIL = 5 };
+    enum { VARIATIONS = TEST_CASES(500), ALLOWED_TO_FAIL = VARIATIONS / 100 };
     double worst_time = 0;
     double worst_deviation = 0;
     double worst_home = 0;

@@ -23,7 +23,8 @@
 enum { TRIALS = 10000 };
 
 #define TOLERANCE (MCT_REAL_IS_FLOAT ? 300 * (double)FLT_EPSILON : 1e-12)
-#define APPARENT  (MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE) /* without them it is not the true motion */
+#define APPARENT \
+    (MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE) /* without them it is not the true motion */
 
 void setUp(void)
 {
@@ -44,7 +45,8 @@ static double worst_acceleration, worst_force, worst_work;
 static double near(test_random *random, const mct_field *field)
 {
     const double sign = field->minimum < 0 && random_in(random, -1, 1) < 0 ? -1 : 1;
-    const double drawn = sign * random_scale(random, 0.3, 3) * (field->standard != 0 ? fabs(field->standard) : 1);
+    const double drawn =
+        sign * random_scale(random, 0.3, 3) * (field->standard != 0 ? fabs(field->standard) : 1);
     return fmin(fmax(drawn, field->minimum), field->maximum);
 }
 
@@ -57,8 +59,9 @@ static void draw_lists(test_random *random, const mct_system *system)
         scene.lists[i].count = count * rows->column_count;
         for (int j = 0; j < scene.lists[i].count; j++) {
             const mct_field *column = &rows->columns[j % rows->column_count];
-            scene.lists[i].values[j] =
-                column->kind == MCT_FIELD_CHOICE ? (random_in(random, 0, 2) < 1 ? 0 : 1) : near(random, column);
+            scene.lists[i].values[j] = column->kind == MCT_FIELD_CHOICE
+                                           ? (random_in(random, 0, 2) < 1 ? 0 : 1)
+                                           : near(random, column);
         }
     }
 }
@@ -67,7 +70,8 @@ static uint32_t draw_effects(test_random *random, const mct_system *system)
 {
     uint32_t effects = 0;
     for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
-        const uint32_t bits = mct_effects[i].bits[(int)random_in(random, 0, mct_effects[i].choices != NULL ? 3 : 2)];
+        const uint32_t bits =
+            mct_effects[i].bits[(int)random_in(random, 0, mct_effects[i].choices != NULL ? 3 : 2)];
         effects |= bits & system->effects;
     }
     return effects | (system->effects & APPARENT);
@@ -95,7 +99,8 @@ static bool draw(test_random *random, int number)
     mct_state_set(system, mct_state_count(&scene), scene.initial, &state);
     memcpy(x, state.x, sizeof state.x);
     if (system->is_timed) {
-        x[mct_state_count(&scene)] = (mct_real)random_in(random, 0, 0.3); /* the engine's rounding grows with turns */
+        x[mct_state_count(&scene)] =
+            (mct_real)random_in(random, 0, 0.3); /* the engine's rounding grows with turns */
     }
     const mct_real input = system->input_without_motor != NULL ? (mct_real)random_in(random, -10, 10) : 0;
     system->evaluate(&constants, mct_scene_effects(&scene), x, input, &out);
@@ -149,11 +154,12 @@ static void compare(const mct_system *system)
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             acceleration_size[i] += fabs(inverse[i * n + j]) * force_size[j];
-            expect("M", (double)out.M[i][j], M[i * n + j], sqrt(M[i * n + i] * M[j * n + j]), &worst_acceleration);
+            expect("M", (double)out.M[i][j], M[i * n + j], sqrt(M[i * n + i] * M[j * n + j]),
+                   &worst_acceleration);
         }
         expect("C v", (double)out.Cv[i], (double)motion->Cv[i], force_size[i], &worst_acceleration);
-        expect("acceleration", (double)out.acceleration[i], (double)motion->acceleration[i], acceleration_size[i],
-               &worst_acceleration);
+        expect("acceleration", (double)out.acceleration[i], (double)motion->acceleration[i],
+               acceleration_size[i], &worst_acceleration);
         work -= (double)judgement.couple[i] * (double)v[i];
         work_size += force_size[i] * fabs((double)v[i]);
     }
@@ -170,7 +176,8 @@ static void compare(const mct_system *system)
             work_size += size * fabs((double)motion->velocity[i][k]);
         }
     }
-    expect("work of the constraints but for couples and base", work, (double)out.power_base, work_size, &worst_work);
+    expect("work of the constraints but for couples and base", work, (double)out.power_base, work_size,
+           &worst_work);
 }
 
 static void test_every_systems_closed_form_is_what_gauss_principle_gives(void)
@@ -193,8 +200,8 @@ static void test_every_systems_closed_form_is_what_gauss_principle_gives(void)
                 compare(system);
             }
         }
-        printf("%-18s acceleration %.1e, constraint force %.1e, work %.1e; refused %d, singular %d\n", system->name,
-               worst_acceleration, worst_force, worst_work, refused, singular);
+        printf("%-18s acceleration %.1e, constraint force %.1e, work %.1e; refused %d, singular %d\n",
+               system->name, worst_acceleration, worst_force, worst_work, refused, singular);
         TEST_ASSERT_TRUE_MESSAGE(refused + singular < TRIALS / 2, system->name);
     }
 }

@@ -16,7 +16,10 @@ import sys
 GOAL_STEP = 80
 GOAL_TICK = 400
 GOAL_BUS = 1000  # more than the tick itself: receive, decode, encode, send
-PROGRAMS = {"double": "benchmark_f64", "float": "benchmark_f32", "mujoco": "benchmark_mujoco"}
+SYSTEMS = {"double": ["benchmark_systems_f64"], "float": ["benchmark_systems_f32"]}
+PROGRAMS = {"double": ["benchmark_systems_f64", "benchmark_ticks_f64"],
+            "float": ["benchmark_systems_f32", "benchmark_ticks_f32"],
+            "mujoco": ["benchmark_mujoco"]}
 PEERS = {"mujoco": "MuJoCo (PyPI's mujoco, installed by tools/setup)"}
 # Each integrator of MuJoCo, and what stands beside it here.
 COUNTERPARTS = {"RK4": ["rk4"], "Euler": ["euler", "seed"], "implicitfast": ["euler", "leap"]}
@@ -35,18 +38,22 @@ class Sample:
                 "quartile_3": quartiles[2], "least": min(self.times), "samples": len(self.times)}
 
 
-def run_all(folder, effort, rounds):
+def path(folder, program):
+    return folder / "tools" / "benchmark" / program
+
+
+def run_all(folder, effort, rounds, programs):
     """Times by (program, name), what else was printed, and which programs are missing.
 
     Programs take turns, so that a slow minute hits all.
     """
     samples, said = {}, {}
-    there = {name: folder / "tools" / "benchmark" / file for name, file in PROGRAMS.items()}
-    there = {name: file for name, file in there.items() if file.exists()}
+    there = [(name, path(folder, file)) for name, files in programs.items() for file in files]
+    there = [(name, file) for name, file in there if file.exists()]
     for turn in range(rounds):
         if sys.stderr.isatty():
             print(f"\rround {turn + 1} of {rounds}", end="", file=sys.stderr, flush=True)
-        for name, file in there.items():
+        for name, file in there:
             done = subprocess.run([file, *effort], capture_output=True, text=True)
             if done.returncode:
                 sys.exit(f"\n{file.name}: {done.stderr}")
@@ -60,7 +67,7 @@ def run_all(folder, effort, rounds):
                 samples.setdefault(key, Sample()).times += [float(words[i]) for i in numbers]
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr)
-    missing = sorted(set(PROGRAMS) - set(there))
+    missing = sorted(set(programs) - {name for name, _ in there})
     return {key: sample.summary() for key, sample in samples.items()}, said, missing
 
 
@@ -112,6 +119,7 @@ def print_table(results, said, missing, about, core):
          lambda name: GOAL_STEP if name == "kernel cart_pole rk4" else None)
     rows("A plant step: bounds and checks as well", "plant ",
          lambda name: GOAL_STEP if name == "plant cart_pole rk4" else None)
+    rows("M, C, tau and all that follows", "evaluate ", lambda name: None)
     rows("A whole tick in lockstep, ring included", "tick ", lambda name: GOAL_TICK)
     rows("The same over a bus, both ends of it", "bus ",
          lambda name: GOAL_BUS)
@@ -135,6 +143,24 @@ def print_table(results, said, missing, about, core):
           "inertia. Both run in this same run, on the same core. Compare ratios between machines, not times.")
 
 
+def pin(core):
+    """Pins this process to a core, the last one by default; gives its number, None where that cannot be done."""
+    if not hasattr(os, "sched_setaffinity"):
+        return None
+    allowed = sorted(os.sched_getaffinity(0))
+    core = allowed[-1] if core is None else core
+    if core not in allowed:
+        print(f"tools/bench: --core: found {core}; allowed {', '.join(map(str, allowed))}", file=sys.stderr)
+        sys.exit(2)
+    os.sched_setaffinity(0, {core})
+    return core
+
+
+def effort_of(quick):
+    """Options of a program that measures, and how many rounds of it."""
+    return (["--samples", "5", "--sample-us", "500"], 3) if quick else (["--samples", "9", "--sample-us", "2000"], 7)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("build", type=pathlib.Path)
@@ -143,18 +169,8 @@ def main():
     parser.add_argument("--core", type=int)
     given = parser.parse_args()
     about = machine(given.build)
-    core = None
-    if hasattr(os, "sched_setaffinity"):
-        allowed = sorted(os.sched_getaffinity(0))
-        core = allowed[-1] if given.core is None else given.core
-        if core not in allowed:
-            print(f"tools/bench: --core: found {core}; allowed {', '.join(map(str, allowed))}",
-                  file=sys.stderr)
-            return 2
-        os.sched_setaffinity(0, {core})
-    effort, rounds = (["--samples", "5", "--sample-us", "500"], 3) if given.quick else \
-        (["--samples", "9", "--sample-us", "2000"], 7)
-    results, said, missing = run_all(given.build, effort, rounds)
+    core = pin(given.core)
+    results, said, missing = run_all(given.build, *effort_of(given.quick), PROGRAMS)
     difference = float(said.get("difference", 0))
     if given.json:
         json.dump({"schema": "mctau.bench/1", "unit": "ns", "machine": about, "core": core,

@@ -442,7 +442,9 @@ static void print_system(const mct_system *system)
     }
     print_effects(system);
     print_input(system);
-    printf("Particles:%s", system->lists_particles ? " those listed, or else" : "");
+    printf("Particles:%s", !system->lists_particles     ? ""
+                           : system->particle_count > 0 ? " those listed, or else"
+                                                        : " those listed");
     for (int i = 0; i < system->particle_count; i++) {
         printf(" %s", system->particle_names[i]);
     }

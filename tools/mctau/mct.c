@@ -219,11 +219,12 @@ static void print_state(const scene_file *file, const mct_result *at)
         print_number(14, 8, at->state[i]);
         printf(" %s\n", at->units[i]);
     }
+    if (!has_motor && system->input_without_motor == NULL) {
+        return;
+    }
     printf("  %-18s", has_motor ? "(input) voltage" : "(input)");
     print_number(14, 8, at->input);
-    printf(" %s\n", has_motor                             ? "V"
-                    : system->input_without_motor != NULL ? system->input_without_motor->unit
-                                                          : "");
+    printf(" %s\n", has_motor ? "V" : system->input_without_motor->unit);
 }
 
 /* M and C, with the unit that turns a column's acceleration or velocity into the row's force. */
@@ -262,7 +263,7 @@ static void print_vectors(const mct_result *at)
 
 static void print_row(const char *name, double mass, const double *vector)
 {
-    printf("  %-18s", name);
+    printf("  %-20s", name);
     if (mass >= 0) {
         print_number(12, 6, mass);
     } else {
@@ -280,12 +281,12 @@ static void print_particles(const mct_result *at, const sums *sum)
     printf("\nConstraint force e = m xdd - f of each particle [N]: what rods and joints carry (1 right, 2 "
            "up, 3 to the "
            "viewer)\n");
-    printf("  %-18s %12s %14s %14s %14s %14s\n", "", "mass [kg]", "e1", "e2", "e3", "|e|");
+    printf("  %-20s %12s %14s %14s %14s %14s\n", "", "mass [kg]", "e1", "e2", "e3", "|e|");
     for (int i = 0; i < at->particles; i++) {
         print_row(at->particle_names[i], at->mass[i], at->constraint_force[i]);
     }
-    print_row("all: the support", -1, sum->force);
-    print_row("its moment [N m]", -1, sum->moment);
+    print_row("all: on the support", -1, sum->force);
+    print_row("moment, origin [N m]", -1, sum->moment);
 }
 
 static void print_gauss(const mct_result *at, const sums *sum)

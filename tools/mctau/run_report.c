@@ -20,6 +20,11 @@ static double time_of(const run_report *report)
     return (double)report->result.ticks * report->scene->scene.dt;
 }
 
+static bool is_process(const run_report *report)
+{
+    return mct_systems[report->scene->scene.system]->is_process;
+}
+
 static bool was_seen(const run_result *result, int fault)
 {
     return result->faults[fault] > 0 || (result->latched & (1u << fault)) != 0;
@@ -186,6 +191,15 @@ void print_run_json(const run_report *report, FILE *file)
 
 /* --- for people --- */
 
+/* A process has no time: its energy is half the square of how far it has to go. */
+static void print_updates(const run_report *report, FILE *file)
+{
+    const run_result *result = &report->result;
+    fprintf(file, "Finished: %" PRIu64 " updates; the tip is %.3g m from its target, %.3g m at the start.\n",
+            result->ticks * (uint64_t)report->scene->scene.substeps, sqrt(2 * result->energy.potential),
+            sqrt(2 * result->energy_start.potential));
+}
+
 static void print_verdict(const run_report *report, FILE *file)
 {
     const run_result *result = &report->result;
@@ -219,6 +233,10 @@ static void print_verdict(const run_report *report, FILE *file)
         fprintf(file, "Stopped from outside at %.3f s, at zero volts.\n", time);
         break;
     case FINISHED:
+        if (is_process(report)) {
+            print_updates(report, file);
+            break;
+        }
         fprintf(file, "Finished: %g s of %s motion.\n", time,
                 report->scene->scene.input == MCT_INPUT_NONE ? "free" : "open-loop");
         break;
@@ -367,10 +385,14 @@ static void print_speed(const run_report *report, FILE *file)
 {
     const run_result *result = &report->result;
     const double loop_s = 1e-9 * result->ns_per_tick * (double)result->ticks;
-    if (loop_s > 0) {
-        fprintf(file, "\nSpeed: %.0f ns per tick, %.0f times as fast as the mechanism itself\n",
-                result->ns_per_tick, time_of(report) / loop_s);
+    if (loop_s <= 0) {
+        return;
     }
+    fprintf(file, "\nSpeed: %.0f ns per tick", result->ns_per_tick);
+    if (!is_process(report)) {
+        fprintf(file, ", %.0f times as fast as the mechanism itself", time_of(report) / loop_s);
+    }
+    fputs("\n", file);
 }
 
 static void print_files(const run_report *report, FILE *file)
@@ -449,7 +471,7 @@ void print_run(const run_report *report, FILE *file)
             report->scene->runner->precision, scene->dt, report->result.ticks);
     print_verdict(report, file);
     print_state(report, file);
-    if (report->result.has_energy) {
+    if (report->result.has_energy && !is_process(report)) {
         print_energy(&report->result, file);
     }
     print_faults(report, file);

@@ -208,6 +208,132 @@ class SolidPendulum(Rods):
         return f'<g class="pose {kind}"><path class="cart" d="M{line}Z"/>{self.still()}</g>'
 
 
+class FixedAxis(Rods):
+    """
+    Each particle on an arm across the axis, which is grey; seen from the front, a little from above and from the right.
+    """
+
+    ball_share = 0.018
+    poses = 5
+
+    @staticmethod
+    def seen(place):
+        x, y, z = place
+        return x - 0.35 * z, -y + 0.25 * z
+
+    def axis(self):
+        axis = [self.parameter(f"axis_{i}") for i in (1, 2, 3)]
+        return [entry / math.hypot(*axis) for entry in axis]
+
+    def arms(self, row):
+        """(foot on the axis, place) of each particle."""
+        u, s, c = self.axis(), math.sin(self.table["angle"][row]), math.cos(self.table["angle"][row])
+        found = []
+        for _, *b in self.run.scene("parameters", "particles"):
+            b = [*b, 0.0][:3]
+            along = sum(p * q for p, q in zip(u, b))
+            foot = [along * entry for entry in u]
+            out = [p - q for p, q in zip(b, foot)]
+            across = [u[i - 2] * out[i - 1] - u[i - 1] * out[i - 2] for i in range(3)]
+            place = [f + c * o + s * a for f, o, a in zip(foot, out, across)]
+            found.append((self.seen(foot), self.seen(place), math.hypot(*out)))
+        return sorted(found, key=lambda arm: arm[2])
+
+    def points(self, row):
+        return [place for _, place, _ in self.arms(row)]
+
+    def outline(self, row):
+        return [point for foot, place, _ in self.arms(row) for point in (foot, place)]
+
+    def still(self):
+        feet = [foot for foot, _, _ in self.arms(0)] + [(0.0, 0.0)]
+        (x, y), (X, Y) = min(feet, key=lambda f: f[::-1]), max(feet, key=lambda f: f[::-1])
+        return f'<path class="rail" d="M{x:.4f} {y:.4f}L{X:.4f} {Y:.4f}"/>' + super().still()
+
+    def pose(self, row, kind=""):
+        arms = self.arms(row)
+        lines = "".join(f"M{a:.4f} {b:.4f}L{x:.4f} {y:.4f}" for (a, b), (x, y), _ in arms)
+        balls = "".join(
+            f'<circle class="bob" cx="{x:.4f}" cy="{y:.4f}" r="{self.ball:.4f}"/>' for _, (x, y), _ in arms
+        )
+        return f'<g class="pose {kind}"><path class="rod" d="{lines}"/>{balls}</g>'
+
+
+class ParticlePendulum(FixedAxis):
+    ball_share = 0.022
+    poses = 16
+
+    def axis(self):
+        return [0.0, 0.0, -1.0]
+
+
+class BallJoint(Rods):
+    """Particles on rods from the pivot, seen from a little above and to the right; the path of the first."""
+
+    ball_share = 0.02
+    path_points = 400
+    poses = 6
+
+    def origin(self, row):
+        return 0.0, 0.0, 0.0
+
+    def particles(self):
+        """(mass, place in body axes) of each."""
+        return [(row[0], row[1:]) for row in self.run.scene("parameters", "particles")]
+
+    def places(self, row):
+        w, x, y, z = (self.table[f"attitude_{axis}"][row] for axis in "wxyz")
+        o, v, found = self.origin(row), (x, y, z), []
+        for _, b in self.particles():  # b + 2 (w v x b + v x (v x b))
+            once = [v[i - 2] * b[i - 1] - v[i - 1] * b[i - 2] for i in range(3)]
+            twice = [v[i - 2] * once[i - 1] - v[i - 1] * once[i - 2] for i in range(3)]
+            found.append(FixedAxis.seen([o[i] + b[i] + 2 * (w * once[i] + twice[i]) for i in range(3)]))
+        return found
+
+    def points(self, row):
+        return [FixedAxis.seen(self.origin(row)), *self.places(row)]
+
+    def tip(self, row):
+        return self.points(row)[1]
+
+    def pose(self, row, kind=""):
+        (a, b), *places = self.points(row)
+        lines = "".join(f"M{a:.4f} {b:.4f}L{x:.4f} {y:.4f}" for x, y in places)
+        balls = "".join(f'<circle class="bob" cx="{x:.4f}" cy="{y:.4f}" r="{self.ball:.4f}"/>' for x, y in places)
+        return f'<g class="pose {kind}"><path class="rod" d="{lines}"/>{balls}</g>'
+
+    def shown(self):
+        return 0.0, self.run.duration
+
+    def title(self):
+        return "the path"
+
+
+class RigidBody(BallJoint):
+    """The same about the centre of mass, whose path is drawn."""
+
+    poses = 12
+
+    def origin(self, row):
+        return [self.table[f"position_{axis}"][row] for axis in (1, 2, 3)]
+
+    def particles(self):
+        """Those listed, from their centre; of a body without, its axes at the radius of gyration."""
+        listed = super().particles()
+        if not listed:
+            reach = math.sqrt(max(self.parameter(f"inertia_{i}_{i}") for i in (1, 2, 3)) / self.parameter("mass"))
+            return [(1.0, [reach * (i == axis) for i in range(3)]) for axis in range(3)]
+        whole = sum(mass for mass, _ in listed)
+        centre = [sum(mass * b[i] for mass, b in listed) / whole for i in range(3)]
+        return [(mass, [b[i] - centre[i] for i in range(3)]) for mass, b in listed]
+
+    def tip(self, row):
+        return self.points(row)[0]
+
+    def still(self):
+        return ""
+
+
 class RotatingFrame(Rods):
     """Seen along axis 3, from the frame; the path in space is that of a frame that turns about this axis."""
 
@@ -239,14 +365,69 @@ class RotatingFrame(Rods):
         return "the path; grey: in space"
 
 
+class Chain(Rods):
+    """Its target is a cross."""
+
+    ball_share = 0.018
+
+    def points(self, row):
+        """Base, joints and tip."""
+        x, y, direction, found = 0.0, 0.0, 0.0, [(0.0, 0.0)]
+        for i, length in enumerate(self.run.scene("parameters", "link_lengths"), start=1):
+            direction += self.table[f"angle_{i}"][row]
+            x, y = x + length * math.cos(direction), y - length * math.sin(direction)
+            found.append((x, y))
+        return found
+
+    def target(self):
+        return self.parameter("target_1"), -self.parameter("target_2")
+
+    def distance(self, row):
+        """From the tip to the target [m]."""
+        return math.dist(self.tip(row), self.target())
+
+    def distances(self):
+        return [self.distance(row) for row in range(len(self.run.time))]
+
+    def outline(self, row):
+        return [*self.points(row), self.target()]
+
+    def still(self):
+        x, y, r = *self.target(), 1.5 * self.ball
+        cross = f"M{x - r:.4f} {y - r:.4f}l{2 * r:.4f} {2 * r:.4f}m0 {-2 * r:.4f}l{-2 * r:.4f} {2 * r:.4f}"
+        return super().still() + f'<path class="stop" d="{cross}"/>'
+
+    def pose(self, row, kind=""):
+        joints = "".join(
+            f'<circle class="pivot" cx="{x:.4f}" cy="{y:.4f}" r="{0.5 * self.ball:.4f}"/>'
+            for x, y in self.points(row)[1:-1]
+        )
+        return super().pose(row, kind).replace("</g>", f"{joints}</g>")
+
+    def shown(self):
+        """To where the tip is as near as can be seen."""
+        rows = range(len(self.run.time))
+        near = 0.001 * self.size + self.distance(rows[-1])
+        there = next(row for row in rows if self.distance(row) <= near)
+        return 0.0, max(self.run.time[there], self.run.result["dt"])
+
+    def title(self):
+        return "the way to the target"
+
+
 DRAWN = {
+    "chain": Chain,
     "cart_pole": CartPole,
     "reaction_wheel": ReactionWheel,
     "pendulum": Pendulum,
     "spring_pendulum": SpringPendulum,
+    "particle_pendulum": ParticlePendulum,
     "moving_base": MovingBase,
+    "fixed_axis": FixedAxis,
     "solid_pendulum": SolidPendulum,
     "rotating_frame": RotatingFrame,
+    "ball_joint": BallJoint,
+    "rigid_body": RigidBody,
 }
 
 

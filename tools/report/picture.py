@@ -38,11 +38,13 @@ def placed(svg, left, top, width, height):
 
 def panels(run, **options):
     """What moves, and what moves it; in a free motion the next coordinate, or the rate."""
+    if run.is_process:
+        return [plot.distance(run, mechanism.of(run).distances(), **options), plot.angles(run, **options)]
     made = [plot.angle(run, **options)] if run.angle else []
     if any(run.table["applied"]):
         made.append(plot.input_(run, **options))
     left = [c for c in run.system["coordinates"] if not c["is_angle"]]
-    fields = left + [c["rate"] for c in run.system["coordinates"]]
+    fields = [f for f in left + [c["rate"] for c in run.system["coordinates"]] if f["name"] in run.table]
     return (made + [plot.state(run, field, **options) for field in fields[: 2 - len(made)]])[:2]
 
 

@@ -176,6 +176,22 @@ def angle(run, **options):
     return plot
 
 
+def angles(run, **options):
+    """All of a process, whole turns included."""
+    plot = Plot("angles", "deg", run, **options)
+    for coordinate in run.system["coordinates"]:
+        if coordinate["name"] in run.table:
+            plot.line(run.time, [math.degrees(value) for value in run.table[coordinate["name"]]], "true", "")
+    return plot
+
+
+def distance(run, distances, **options):
+    """What a process makes small; where it is exactly 0, it has no logarithm and is not drawn."""
+    plot = Plot("from the tip to the target", "m", run, **{"yscale": "log"} | options)
+    plot.line(run.time, [value or math.nan for value in distances], "true", "")
+    return plot
+
+
 def state(run, field, **options):
     """A coordinate or a rate, by its field of the catalogue."""
     plot = Plot(words(field["name"]), field["unit"], run, **options)

@@ -54,6 +54,9 @@ def lead(run):
             f"In {run.duration:g} s the {words(run.name)} came to within {nearest:.1f} degrees of upright, "
             "but was not balancing at the end."
         )
+    elif run.is_process:
+        way = mechanism.of(run).distances()
+        said.append(f"The tip of the {words(run.name)} went from {way[0]:.3g} m to {way[-1]:.3g} m from its target.")
     else:
         kind = run.scene("input", "kind")
         moved = "free motion" if kind in (None, "none") else f"open-loop motion under the input {kind}"
@@ -73,9 +76,8 @@ def spoken(run):
     sentences = [sentence if sentence.endswith(".") else sentence + "." for sentence in sentences]
     ns = run.result["ns_per_tick"]
     if not run.scene("scene", "realtime") and ns > 0:
-        sentences.append(
-            f"A tick took {ns:.0f} ns, which is {1e9 * run.result['dt'] / ns:.0f} times real time."
-        )
+        fast = "" if run.is_process else f", which is {1e9 * run.result['dt'] / ns:.0f} times real time"
+        sentences.append(f"A tick took {ns:.0f} ns{fast}.")
     return "\n".join(f"  {sentence}" for sentence in sentences)
 
 
@@ -96,16 +98,18 @@ def figures(run):
         found.append(("cart went as far as", f"{max(map(abs, run.table['cart_position'])):.3f}", "m"))
     elif run.name == "reaction_wheel":
         found.append(("fastest wheel", f"{max(map(abs, run.table['wheel_rate'])):.0f}", "rad/s"))
+    elif run.is_process:
+        found.append(("from the tip to the target", f"{mechanism.of(run).distances()[-1]:.3g}", "m"))
     else:
         rate = run.system["coordinates"][0]["rate"]
         largest = max(map(abs, run.table[rate["name"]]))
         found.append((f"largest {words(rate['name'])}", f"{largest:.3g}", rate["unit"]))
     if run.scene.has_motor:
         found.append(("largest voltage", f"{max(map(abs, run.table['applied'])):.2f}", "V"))
-    else:
+    elif not run.is_process:
         change = result["energy"] - result["energy_start"]
         found.append(("energy, from beginning to end", f"{change:+.3g}".replace("-", "\u2212"), "J"))
-    if not run.scene("scene", "realtime") and result["ns_per_tick"] > 0:
+    if not run.is_process and not run.scene("scene", "realtime") and result["ns_per_tick"] > 0:
         found.append(("speed", f"{1e9 * result['dt'] / result['ns_per_tick']:.0f}", "\u00d7 real time"))
     found.append(("faults", str(len(run.faults)) if run.faults else "none", ""))
     return found
@@ -138,6 +142,8 @@ def plots(run):
     """All panels, in the order in which they are read."""
     time, table = run.time, run.table
     upright = run.result["upright_at"] if run.controlled else None
+    if run.is_process:
+        return [plot.distance(run, mechanism.of(run).distances()), plot.angles(run)]
     made = [plot.angle(run)] if run.angle else []
 
     def panel(title, unit, **options):
@@ -160,7 +166,7 @@ def plots(run):
         made.append(plot.input_(run))
     for coordinate in run.system["coordinates"]:
         name, rate = coordinate["name"], coordinate["rate"]["name"]
-        if not coordinate["is_angle"]:
+        if not coordinate["is_angle"] and name in table:  # of a rotation there is a quaternion
             position = panel(words(name), coordinate["unit"])
             estimated(position, name)
             if run.controlled:

@@ -122,15 +122,28 @@ class Scene:
             for table in catalogue["tables"]
         }
         self.values["parameters"] = {field["name"]: field["default"] for field in system["parameters"]}
+        for rows in system.get("lists", []):
+            flat = len(rows["columns"]) == 1
+            self.values["parameters"][rows["name"]] = [row[0] if flat else row for row in rows["default"]]
         self.values["effects"] = {effect["name"]: effect["default"] for effect in system["effects"]}
         for table, keys in given.items():
-            self.values.setdefault(table, {}).update(keys)
+            for name, value in keys.items():
+                self._give(table, name, value)
         for override in self.overrides:
             key, equals, text = override.partition("=")
             table, dot, name = key.partition(".")
             if not equals or not dot:
                 raise Complaint(f"--set: found {override}; allowed table.key=value")
-            self.values.setdefault(table.strip(), {})[name.strip()] = value_of(text.strip())
+            self._give(table.strip(), name.strip(), value_of(text.strip()))
+
+    def _give(self, table, name, value):
+        """A vector and a matrix give their components: target = [1, 2] is target_1 and target_2."""
+        values = self.values.setdefault(table, {})
+        if isinstance(value, list) and any(key.startswith(f"{name}_1") for key in values):
+            for i, component in enumerate(value, start=1):
+                self._give(table, f"{name}_{i}", component)
+        else:
+            values[name] = value
 
     def __call__(self, table, key):
         return self.values[table][key]
@@ -171,6 +184,7 @@ class Run:
             self.angle = next((c for c in coordinates if c["is_angle"]), None)
         self.angle_name = self.angle and self.angle["name"]
         self.rate_names = [coordinate["rate"]["name"] for coordinate in coordinates]
+        self.is_process = not any(self.rate_names)
         self.degrees = [folded(math.degrees(angle)) for angle in self.table.get(self.angle_name, [])]
         self.controlled = f"{self.angle_name}_estimate" in self.table
         self.modes = spans(self.time, self.table["mode"], self.duration)

@@ -1,9 +1,8 @@
 /*
- * The core's own figures, in the precision of the library that this is linked with:
- *   kernel SYSTEM STEPPER   one step of a kernel
- *   plant SYSTEM STEPPER    the same with what a tick adds: bounds of the input, checks of the state, turns
- *   tick SYSTEM MODE        a whole tick in lockstep: sensors, estimator, controller, supervisor, plant,
- *                           record to a ring that is emptied
+ * What a whole tick costs, in the precision of the library that this is linked with:
+ *   tick SYSTEM MODE      in lockstep: sensors, estimator, controller, supervisor, plant, record to a ring that is
+ *                         emptied
+ *   bus SYSTEM PROTOCOL   the same over a bus within the process
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,75 +15,12 @@
 #include "mctau/loop.h"
 #include "measure.h"
 
-enum { INPUTS = 64, SWING_UP_TICKS = 512, SETTLE_TICKS = 20000 };
+enum { SWING_UP_TICKS = 512, SETTLE_TICKS = 20000 };
 
 static void fail(const char *name, const char *why)
 {
     fprintf(stderr, "benchmark: %s: %s\n", name, why);
     exit(1);
-}
-
-/* --- steps --- */
-
-typedef struct {
-    mct_plant start, plant;
-    mct_real inputs[INPUTS]; /* held for a step each, and never the same for long: nothing comes to rest */
-} stepping;
-
-static void restart_plant(void *context)
-{
-    stepping *self = context;
-    self->plant = self->start;
-}
-
-static void run_kernel(void *context, long count)
-{
-    stepping *self = context;
-    for (long k = 0; k < count; k++) {
-        self->plant.kernel(&self->plant.constants, &self->plant.state, self->inputs[k % INPUTS], 1);
-    }
-}
-
-static void run_plant(void *context, long count)
-{
-    stepping *self = context;
-    for (long k = 0; k < count; k++) {
-        mct_plant_step(&self->plant, self->inputs[k % INPUTS]);
-    }
-}
-
-static void measure_steps(const measure_effort *effort, int system, int stepper)
-{
-    stepping self;
-    mct_scene scene;
-    char name[64];
-    mct_scene_defaults(&scene, system);
-    const mct_system *model = mct_systems[system];
-    const double *p = scene.parameters;
-    const mct_actuation *actuation = model->actuation;
-    const double rate =
-        actuation != NULL ? p[actuation->resistance_parameter] / p[actuation->inductance_parameter] : 0;
-    const double limit = mct_steppers[stepper].motor_stability_limit;
-    scene.stepper = stepper;
-    if (actuation != NULL) {
-        scene.initial[actuation->upright_coordinate] = 2;
-    }
-    while ((scene.effects & MCT_MOTOR_INDUCTIVE) && limit > 0 && scene.dt * rate > 0.9 * limit) {
-        scene.dt /= 2; /* the cost of a step does not depend on its length */
-    }
-    if (mct_plant_init(&self.start, &scene, NULL) != MCT_OK) {
-        return; /* a stepper that does not suit */
-    }
-    for (int i = 0; i < INPUTS; i++) {
-        self.inputs[i] = (mct_real)((i * 37) % INPUTS - (INPUTS - 1) / 2.0) / 16;
-    }
-    snprintf(name, sizeof name, "kernel %s %s", model->name, mct_steppers[stepper].name);
-    measure(effort, name, run_kernel, restart_plant, &self, 0);
-    snprintf(name, sizeof name, "plant %s %s", model->name, mct_steppers[stepper].name);
-    measure(effort, name, run_plant, restart_plant, &self, 0);
-    if (self.plant.diverged_ticks != 0) {
-        fail(name, "diverged");
-    }
 }
 
 /* --- ticks --- */
@@ -218,9 +154,6 @@ int main(int argc, char **argv)
 {
     const measure_effort effort = measure_effort_of(argc, argv);
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
-        for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
-            measure_steps(&effort, system, stepper);
-        }
         if (mct_systems[system]->actuation == NULL) {
             continue;
         }

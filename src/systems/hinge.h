@@ -1,0 +1,153 @@
+/*
+ * A rigid body that turns about one fixed axis: what systems of this kind share.
+ *
+ *     I a = P sin th + Q cos th - nu w - c w |w| + torque + dry friction,    th the angle, w its rate, a its acceleration
+ *
+ * The including file's `constants_t` begins with a mct_hinge. Its MCT_ALWAYS, defined first, says which of P and Q it
+ * has: the other leaves no instruction.
+ */
+#ifndef MCT_SYSTEMS_HINGE_H
+#define MCT_SYSTEMS_HINGE_H
+
+#include "../effects/friction1.h"
+#include "../steppers/euler.h"
+#include "../steppers/leap.h"
+#include "../steppers/rk4.h"
+#include "../steppers/seed.h"
+#include "kernels.h"
+#include "mctau/hinge.h"
+#include "mctau/sincos.h"
+
+/* No effects, but of a kernel's mask: */
+#define MCT_HINGE_SINE   (UINT32_C(1) << 29)
+#define MCT_HINGE_COSINE (UINT32_C(1) << 28)
+
+MCT_INLINE mct_real mct_hinge_size(mct_real value)
+{
+    return value < 0 ? -value : value;
+}
+
+/* All torques but dry friction. */
+MCT_INLINE mct_real mct_hinge_torque(const mct_hinge *k, unsigned effects, mct_real s, mct_real c, mct_real w,
+                                     mct_real u)
+{
+    mct_real sum = u;
+    if ((effects & MCT_GRAVITY) && (effects & MCT_HINGE_SINE)) {
+        sum += k->sine_moment * s;
+    }
+    if ((effects & MCT_GRAVITY) && (effects & MCT_HINGE_COSINE)) {
+        sum += k->cosine_moment * c;
+    }
+    if (effects & MCT_VISCOUS) {
+        sum -= k->viscous * w;
+    }
+    if (effects & MCT_DRAG) {
+        sum -= k->drag * w * mct_hinge_size(w);
+    }
+    return sum;
+}
+
+MCT_INLINE void mct_hinge_derivative_at(const void *constants, unsigned effects, const mct_real *x,
+                                        mct_real s, mct_real c, mct_real u, mct_real *dx)
+{
+    const mct_hinge *k = constants;
+    dx[0] = x[1];
+    dx[1] = k->inverse_inertia * mct_hinge_torque(k, effects, s, c, x[1], u);
+}
+
+MCT_INLINE void mct_hinge_derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                                     mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
+    mct_hinge_derivative_at(constants, effects, x, s, c, u, dx);
+}
+
+/*
+ * By how much the impulse falls with the new rate: viscous damping is taken there (`share` 1: euler) or at the mean of
+ * both (1/2: leap); w |w| becomes w' |w|, bilinear as all that `leap` finds quadratic.
+ */
+MCT_INLINE mct_real mct_hinge_damping(const mct_hinge *k, unsigned effects, mct_real w, mct_real share)
+{
+    if (!(effects & MCT_DRAG)) {
+        return k->step.h * share * k->viscous;
+    }
+    const mct_real drag = k->drag * mct_hinge_size(w);
+    return k->step.h * ((effects & MCT_VISCOUS) ? share * k->viscous + drag : drag);
+}
+
+/* Velocity increment of a step. */
+MCT_INLINE void mct_hinge_kick(const mct_hinge *k, unsigned effects, const mct_real *x, mct_real u,
+                               mct_real share, mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[0], &s, &c);
+    const mct_real impulse = k->step.h * mct_hinge_torque(k, effects, s, c, x[1], u);
+    if (effects & (MCT_VISCOUS | MCT_DRAG)) {
+        dx[1] = impulse / (k->inertia + mct_hinge_damping(k, effects, x[1], share));
+    } else {
+        dx[1] = k->inverse_inertia * impulse;
+    }
+}
+
+MCT_INLINE void mct_hinge_kick_implicit(const void *constants, unsigned effects, const mct_real *x,
+                                        mct_real u, mct_real *dx)
+{
+    mct_hinge_kick(constants, effects, x, u, 1, dx);
+}
+
+MCT_INLINE void mct_hinge_kick_symmetric(const void *constants, unsigned effects, const mct_real *x,
+                                         mct_real u, mct_real *dx)
+{
+    mct_hinge_kick(constants, effects, x, u, MCT_R(0.5), dx);
+}
+
+/* Of kernels.h. */
+MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    const mct_hinge *k = constants;
+    (void)effects;
+    (void)u;
+    mct_friction1_correct(k->inertia, k->inverse_inertia, k->coulomb, k->step.h, x[1], dx);
+}
+
+/* All of an evaluation but the particles; potential energy is that of P and Q alone. s, c are of the angle. */
+static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_real s, mct_real c,
+                                      mct_real w, mct_real u, mct_evaluation *out)
+{
+    *out = (mct_evaluation){0};
+    const mct_real smooth = mct_hinge_torque(k, effects | MCT_ALWAYS, s, c, w, u);
+    const mct_real dry = mct_friction1_force(k->coulomb, w, smooth);
+    out->M[0][0] = k->inertia;
+    out->tau[0] = smooth + dry;
+    out->acceleration[0] = k->inverse_inertia * out->tau[0];
+    out->kinetic_energy = MCT_R(0.5) * k->inertia * w * w;
+    out->potential_energy = k->sine_moment * c - k->cosine_moment * s;
+    out->power_input = u * w;
+    out->power_viscous = -k->viscous * w * w - k->drag * mct_hinge_size(w) * w * w;
+    out->power_coulomb = dry * w;
+}
+
+/* The kernels, and kernel() of the descriptor: MCT_HINGE_KERNELS(MCT_KERNELS_3, its three switches). */
+#define MCT_HINGE_KERNELS(KERNELS, ...)                                                  \
+    KERNELS(seed, k->hinge.step.remainder, 1, __VA_ARGS__,                               \
+            mct_seed(mct_hinge_derivative, k, k->hinge.step, effects, 1, x, u, dx))      \
+    KERNELS(euler, k->hinge.step.remainder, 1, __VA_ARGS__,                              \
+            mct_euler(mct_hinge_kick_implicit, k, k->hinge.step, effects, 1, x, u, dx))  \
+    KERNELS(leap, k->hinge.step.remainder, 1, __VA_ARGS__,                               \
+            mct_leap(mct_hinge_kick_symmetric, k, k->hinge.step, effects, 1, x, u, dx))  \
+    KERNELS(rk4, k->hinge.step.sixth_remainder, 1, __VA_ARGS__,                          \
+            mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx)) \
+    static mct_kernel kernel(int stepper, uint32_t effects)                              \
+    {                                                                                    \
+        static const uint32_t switches[] = {__VA_ARGS__, 0};                             \
+        static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {                    \
+            [MCT_STEPPER_SEED] = seed_kernels,                                           \
+            [MCT_STEPPER_EULER] = euler_kernels,                                         \
+            [MCT_STEPPER_LEAP] = leap_kernels,                                           \
+            [MCT_STEPPER_RK4] = rk4_kernels,                                             \
+        };                                                                               \
+        return mct_switched_kernel_of(kernels, switches, stepper, effects);              \
+    }
+
+#endif
