@@ -388,11 +388,19 @@ bool mct_input_reads(int32_t kind, const char *key)
     return reads;
 }
 
-static mct_status examine_input(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
+static mct_status examine_input(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                                mct_message *sentence)
 {
     const mct_list *const times = &scene->input_times;
     const mct_list *const values = &scene->input_values;
     blame->table = "input";
+    if (scene->input != MCT_INPUT_NONE && system->actuation == NULL && system->input_without_motor == NULL) {
+        blame->key = "kind";
+        mct_message_add(sentence, "found an input, which ");
+        mct_message_add(sentence, system->name);
+        mct_message_add(sentence, " has not; allowed none");
+        return MCT_ERROR_UNSUITED;
+    }
     if (scene->input == MCT_INPUT_CSV && (scene->input_file[0] == '\0' || scene->input_column[0] == '\0')) {
         blame->key = scene->input_file[0] == '\0' ? "file" : "column";
         mct_message_add(sentence, "found none; an input of kind csv needs a file and the name of a column");
@@ -479,7 +487,7 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     status = status != MCT_OK ? status : examine_effects(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_stepper(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_controller(scene, blame, sentence);
-    status = status != MCT_OK ? status : examine_input(scene, blame, sentence);
+    status = status != MCT_OK ? status : examine_input(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_attitude(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_duration(scene, blame, sentence);
     return status;

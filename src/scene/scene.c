@@ -661,6 +661,18 @@ static mct_status set_all(reader *self)
     return status;
 }
 
+/* What a scene would need to have a state. */
+static const char *what_brings_state(const mct_system *system, int index)
+{
+    if (system->lists_coordinates) {
+        return "a longer list";
+    }
+    if (!mct_state_is_phase(system, index)) {
+        return "effects.motor = inductive and an inductance";
+    }
+    return (system->effects & MCT_FORCING) ? "effects.forcing = true" : "effects.base_motion = true";
+}
+
 /* Refuses keys that nothing would read: a writer who gives one expects it to act. */
 static mct_status refuse_idle_keys(const reader *self)
 {
@@ -682,11 +694,7 @@ static mct_status refuse_idle_keys(const reader *self)
             begin_key(self, value);
             if (idle_state) {
                 mct_message_add(self->why, "found a state that the scene has not; allowed with ");
-                mct_message_add(self->why,
-                                mct_state_is_phase(self->system, i)
-                                    ? ((self->system->effects & MCT_FORCING) ? "effects.forcing = true"
-                                                                             : "effects.base_motion = true")
-                                    : "effects.motor = inductive and an inductance");
+                mct_message_add(self->why, what_brings_state(self->system, i));
             } else {
                 const mct_scene_key selector = mct_key_at(table, self->system, 0);
                 const char *between = "";

@@ -1,17 +1,18 @@
 /*
  * Ball joint: particles m at b, fixed to each other, that turn about a fixed pivot in all three ways.
  *
- * Equation      M wd + w x M w = sum x x m g - nu w,    x = r b,  M = - sum m R^2[x] = sum m (x'x - x x'), w the angular
- *               velocity in space axes. Steps are taken in body axes: rotor.h.
+ * Equation      M wd + w x M w = sum x x m g - nu w,  x = r b,  M = - sum m R^2[x] = sum m (x'x - x x'),
+ *               w the angular velocity in space axes. Steps are taken in body axes: rotor.h.
  * Source        sections 4.2, 5.1 to 5.3, 5.5.1, eqs. 241-263, 297-313, 339-350.
- * Conventions   the pivot is the origin of space and of the body; q takes body axes to space axes; w in space axes.
- * Differences   (242) to (263), (298) to (312): thd is not the rate of the rotation vector but w; (310), (341): the
- *               masses and the minus; (348): M has no inverse with a single particle, and the sign is the other one.
- *               C = m J'Jdot = R[w] sum m x x', which is not R'[L] of (258), (301), but for what it does to w. Friction
- *               is ours.
+ * Conventions   the pivot is the origin of space and of the body; q takes body axes to space axes.
+ * Differences   (242) to (263), (298) to (312): thd is not the rate of the rotation vector but w; (310),
+ *               (341): the masses and the minus; (348): M has no inverse with a single particle, and the sign
+ *               is the other one. C = m J'Jdot = - R[w] sum m x x' is not R'[L] of (258), (301), but for what
+ *               it does to w. Friction is ours.
  * Constraint    body and pivot, e = m xdd - m g, which also transmits the couple of friction.
- * Validity      body rigid. With all particles on a line through the pivot, one of them alone as well, there is no inertia
- *               about it: the spin about it is kept and means nothing, and friction does not act on it.
+ * Validity      body rigid. With all particles on a line through the pivot, as with a single one, there is no
+ *               inertia about it: the spin about it is kept and means nothing, and friction does not act on
+ *               it.
  */
 #include "mctau/ball_joint.h"
 
@@ -53,9 +54,11 @@ static const mct_row_list lists[] = {
      .standard = top},
 };
 
-#define COORDINATE(axis, standard, what)                                                          \
-    {.position = MCT_QUANTITY("rotation_" axis, "rad", -1e6, 1e6, 0, "about space axis " axis),   \
-     .rate = MCT_QUANTITY("angular_velocity_" axis, "rad/s", -1e6, 1e6, standard, what)}
+#define COORDINATE(axis, standard, what)                                                           \
+    {                                                                                              \
+        .position = MCT_QUANTITY("rotation_" axis, "rad", -1e6, 1e6, 0, "about space axis " axis), \
+        .rate = MCT_QUANTITY("angular_velocity_" axis, "rad/s", -1e6, 1e6, standard, what)         \
+    }
 
 static const mct_coordinate coordinates[N] = {
     COORDINATE("1", 1, "in space axes"),
@@ -100,7 +103,8 @@ MCT_INLINE void couple_at(const constants_t *k, unsigned effects, const mct_real
 
 /* --- steps in body axes: x is the attitude and the angular velocity in body axes --- */
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
 {
     const constants_t *k = constants;
     mct_real couple[3];
@@ -163,7 +167,8 @@ MCT_INLINE void rk4(const constants_t *k, unsigned effects, const mct_real *x, m
 typedef void (*step_in_body_axes)(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx);
 
 /* A step in body axes as one in space axes: r' w' - r w = r (dw + (E - 1) w'), r' = r E, w' = w + dw. */
-MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned effects, const mct_real *x,
+                         mct_real *dx)
 {
     mct_real body[MCT_MAX_STATES], back[4], e[4], change[3];
     for (int i = 0; i < 4; i++) {
@@ -184,7 +189,8 @@ MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned 
     mct_rotate(x + Q, change, dx + W);
 }
 
-static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_evaluation *out)
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
 {
     const constants_t *k = constants;
     const mct_rotor *rotor = &k->rotor;
@@ -215,7 +221,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         mct_real column[3];
         mct_cross(w, second[j], column);
         for (int i = 0; i < 3; i++) {
-            out->M[i][j] = (i == j ? second[(j + 1) % 3][(j + 1) % 3] + second[(j + 2) % 3][(j + 2) % 3] : -second[i][j]);
+            out->M[i][j] = (i == j ? second[(j + 1) % 3][(j + 1) % 3] + second[(j + 2) % 3][(j + 2) % 3]
+                                   : -second[i][j]);
             out->C[i][j] = -column[i];
         }
     }
@@ -237,7 +244,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->potential_energy = 0 - mct_dot(center, k->gravity); /* not -0 */
 }
 
-static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3])
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
 {
     const constants_t *k = constants;
     (void)time;

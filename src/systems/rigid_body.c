@@ -1,18 +1,19 @@
 /*
- * Rigid body: particles m at b, fixed to each other, that move and turn freely under gravity, constant forces on points of
- * the body, and drag.
+ * Rigid body: particles m at b, fixed to each other, that move and turn freely under gravity, constant forces
+ * on points of the body, and drag.
  *
- * Equation      m xdd = F + m g - c |v| v,    I wd + w x I w = couple - d |w| w,    F and couple of the forces,
- *               couple = sum p x F, I = sum m (b'b - b b'); p and b from the centre.
+ * Equation      m xdd = F + m g - c |v| v,  I wd + w x I w = couple - d |w| w,  F and couple of the forces,
+ *               couple = sum p x F,  I = sum m (b'b - b b'); p and b from the centre.
  * Source        section 6, eqs. 372-419.
- * Conventions   position and velocity are those of the centre of mass, in space axes, as (378); q takes body axes to
- *               space axes; w is the angular velocity in body axes, as (417) needs it. A force's point is fixed in the body;
- *               its vector is constant in space axes or in body axes.
- * Differences   (381), (419): the rate of a rotation vector is not w; (382), (388), (390), (392): masses and signs; (404):
- *               without torque the angular momentum is constant, not w. C = m J'Jdot = R[S w], S = sum m b b', which is
- *               not R'[I w] of (392), but for what it does to w. Drag is ours.
- * Particles     A body that is given by mass, inertia and centre moves as six particles: mct_equimomental_particles().
- * Constraint    the body itself, e = m xdd - m g, which also transmits forces, drag and couples to the particles.
+ * Conventions   position and velocity are those of the centre of mass, in space axes, as (378); q takes body
+ *               axes to space axes; w is the angular velocity in body axes, as (417) needs it. A force's
+ *               point is fixed in the body; its vector is constant in space axes or in body axes.
+ * Differences   (381), (419): the rate of a rotation vector is not w; (382), (388), (390), (392): masses and
+ *               signs; (404): without torque the angular momentum is constant, not w. C = m J'Jdot = R[S w],
+ *               S = sum m b b', is not R'[I w] of (392), but for what it does to w. Drag is ours.
+ * Particles     A body given by mass, inertia and centre moves as six: mct_equimomental_particles().
+ * Constraint    the body itself, e = m xdd - m g, which also transmits forces, drag and couples to the
+ *               particles.
  * Validity      body rigid, with inertia about every axis. Drag knows no shape.
  */
 #include "mctau/rigid_body.h"
@@ -31,7 +32,15 @@ typedef mct_rigid_body_constants constants_t;
 
 enum { N = 6, Q = 3, V = 7, W = 10 }; /* coordinates; places of quaternion and velocities in the state */
 
-enum { MASS, INERTIA, CENTER = INERTIA + 9, GRAVITY = CENTER + 3, DRAG = GRAVITY + 3, ANGULAR_DRAG, PARAMETERS };
+enum {
+    MASS,
+    INERTIA,
+    CENTER = INERTIA + 9,
+    GRAVITY = CENTER + 3,
+    DRAG = GRAVITY + 3,
+    ANGULAR_DRAG,
+    PARAMETERS
+};
 
 #define MOMENT(name, doc) MCT_QUANTITY("inertia_" name, "kg m^2", -1e12, 1e12, 0, doc)
 #define PLACE(name, doc)  MCT_QUANTITY("centre_" name, "m", -1e3, 1e3, 0, doc)
@@ -53,9 +62,10 @@ static const mct_field parameters[PARAMETERS] = {
     [GRAVITY] = MCT_QUANTITY("gravity_1", "m/s^2", -1e4, 1e4, 0, "gravitational acceleration, to the right"),
     [GRAVITY + 1] = MCT_QUANTITY("gravity_2", "m/s^2", -1e4, 1e4, -9.81, "upwards"),
     [GRAVITY + 2] = MCT_QUANTITY("gravity_3", "m/s^2", -1e4, 1e4, 0, "to the viewer"),
-    [DRAG] = MCT_QUANTITY("drag", "N s^2/m^2", 0, 1e6, 0.01, "force of the air by the square of the velocity"),
-    [ANGULAR_DRAG] =
-        MCT_QUANTITY("angular_drag", "N m s^2", 0, 1e6, 1e-5, "its couple by the square of the angular velocity"),
+    [DRAG] =
+        MCT_QUANTITY("drag", "N s^2/m^2", 0, 1e6, 0.01, "force of the air by the square of the velocity"),
+    [ANGULAR_DRAG] = MCT_QUANTITY("angular_drag", "N m s^2", 0, 1e6, 1e-5,
+                                  "its couple by the square of the angular velocity"),
 };
 
 /* A racket, three different moments: the least about its handle, axis 1; the largest about axis 3. */
@@ -104,12 +114,16 @@ static const mct_row_list lists[] = {
                 .standard = racket},
 };
 
-#define SHIFT(axis, what)                                                                   \
-    {.position = MCT_QUANTITY("position_" axis, "m", -1e6, 1e6, 0, "of the centre, " what), \
-     .rate = MCT_QUANTITY("velocity_" axis, "m/s", -1e6, 1e6, 0, "")}
-#define TURN(axis, standard, what)                                                              \
-    {.position = MCT_QUANTITY("rotation_" axis, "rad", -1e6, 1e6, 0, "about body axis " axis),  \
-     .rate = MCT_QUANTITY("angular_velocity_" axis, "rad/s", -1e6, 1e6, standard, what)}
+#define SHIFT(axis, what)                                                                      \
+    {                                                                                          \
+        .position = MCT_QUANTITY("position_" axis, "m", -1e6, 1e6, 0, "of the centre, " what), \
+        .rate = MCT_QUANTITY("velocity_" axis, "m/s", -1e6, 1e6, 0, "")                        \
+    }
+#define TURN(axis, standard, what)                                                                \
+    {                                                                                             \
+        .position = MCT_QUANTITY("rotation_" axis, "rad", -1e6, 1e6, 0, "about body axis " axis), \
+        .rate = MCT_QUANTITY("angular_velocity_" axis, "rad/s", -1e6, 1e6, standard, what)        \
+    }
 
 static const mct_coordinate coordinates[N] = {
     SHIFT("1", "to the right"),   SHIFT("2", "upwards"), SHIFT("3", "to the viewer"),
@@ -196,12 +210,14 @@ static mct_status refuse_line(int rows, const double *moments, struct mct_messag
     mct_message_add(why, ": found principal moments ");
     add_figures(why, moments, " kg m^2");
     mct_message_add(why, rows > 0 ? ", particles on one line" : "");
-    mct_message_add(why, "; allowed none below 1e-10 of the largest, for how the body turns about that axis is not defined");
+    mct_message_add(
+        why,
+        "; allowed none below 1e-10 of the largest, for how the body turns about that axis is not defined");
     return MCT_ERROR_UNSUITED;
 }
 
-static void add_force(const double *row, const double *center, double space_force[3], double space_lever[3][3],
-                      double body_force[3], double body_couple[3])
+static void add_force(const double *row, const double *center, double space_force[3],
+                      double space_lever[3][3], double body_force[3], double body_couple[3])
 {
     const double *f = row + FORCE;
     double arm[3];
@@ -257,8 +273,8 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     if (status != MCT_OK) {
         return status;
     }
-    status = mct_rotor_prepare(rows > 0 ? scene->lists[PARTICLES].values : made, mct_particle_count(scene), true, h,
-                               &k->rotor, &body, moments);
+    status = mct_rotor_prepare(rows > 0 ? scene->lists[PARTICLES].values : made, mct_particle_count(scene),
+                               true, h, &k->rotor, &body, moments);
     if (status == MCT_ERROR_SINGULAR || mct_dot(k->rotor.idle_axis, k->rotor.idle_axis) > 0) {
         return refuse_line(rows, moments, why);
     }
@@ -275,7 +291,8 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
 /* --- what acts --- */
 
 /* Force in space axes and couple about the centre in body axes, both of the forces alone. */
-MCT_INLINE void forces_at(const constants_t *k, unsigned effects, const mct_real *q, mct_real *force, mct_real *couple)
+MCT_INLINE void forces_at(const constants_t *k, unsigned effects, const mct_real *q, mct_real *force,
+                          mct_real *couple)
 {
     if (!(effects & MCT_FORCES)) {
         for (int i = 0; i < 3; i++) {
@@ -309,7 +326,8 @@ MCT_INLINE void act(const constants_t *k, unsigned effects, const mct_real *q, m
     }
 }
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                           mct_real *dx)
 {
     const constants_t *k = constants;
     mct_real couple[3], slope;
@@ -344,9 +362,12 @@ MCT_INLINE void seed(const constants_t *k, unsigned effects, const mct_real *x, 
     mct_rotor_renormalise(x + Q, dx + Q);
 }
 
-/* dv under an acceleration a and drag D v: (1 + h D) dv = h (a - D v), or (1 + h/2 (D + slope v v')) dv at the midpoint. */
-MCT_INLINE void push(const constants_t *k, unsigned effects, bool is_midpoint, const mct_real *a, const mct_real *v,
-                     mct_real *dv)
+/*
+ * dv under an acceleration a and drag D v: (1 + h D) dv = h (a - D v) for `euler`,
+ * (1 + h/2 (D + slope v v')) dv = h (a - D v) for `leap`, at the midpoint.
+ */
+MCT_INLINE void push(const constants_t *k, unsigned effects, bool is_midpoint, const mct_real *a,
+                     const mct_real *v, mct_real *dv)
 {
     const mct_real h = k->rotor.step.h;
     const mct_real share = is_midpoint ? k->rotor.step.half : h;
@@ -435,7 +456,8 @@ static void evaluate_particles(const constants_t *k, const mct_real *x, mct_eval
     }
 }
 
-static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u, mct_evaluation *out)
+static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
+                     mct_evaluation *out)
 {
     const constants_t *k = constants;
     const mct_rotor *rotor = &k->rotor;
@@ -474,7 +496,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->power_viscous = -drag * mct_dot(v, v) - angular_drag * mct_dot(w, w);
 }
 
-static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q, mct_hyperdual (*position)[3])
+static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
+                  mct_hyperdual (*position)[3])
 {
     const constants_t *k = constants;
     (void)time;

@@ -36,7 +36,8 @@ static mct_status prepare_inertia(const double *inertia, mct_rotor *rotor, doubl
             }
             for (int j = 0; j < 3; j++) {
                 const double outer = axes[3 * i + axis] * axes[3 * j + axis];
-                *(is_idle ? &shape[3 * i + j] : &inverse[3 * i + j]) += is_idle ? outer : outer / moments[axis];
+                *(is_idle ? &shape[3 * i + j] : &inverse[3 * i + j]) +=
+                    is_idle ? outer : outer / moments[axis];
             }
         }
     }
@@ -49,8 +50,8 @@ static mct_status prepare_inertia(const double *inertia, mct_rotor *rotor, doubl
     return MCT_OK;
 }
 
-mct_status mct_rotor_prepare(const double *particles, int count, bool about_center, double h, mct_rotor *rotor,
-                             mct_body *body, double *moments)
+mct_status mct_rotor_prepare(const double *particles, int count, bool about_center, double h,
+                             mct_rotor *rotor, mct_body *body, double *moments)
 {
     static const double origin[3] = {0, 0, 0};
     double mass[MCT_MAX_PARTICLES], place[MCT_MAX_PARTICLES][3], inertia[9];

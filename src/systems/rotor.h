@@ -5,11 +5,12 @@
  *
  * w is the angular velocity in body axes, q the attitude, D the damping: viscous + drag |w|.
  *
- * Where all particles lie on a line through the point there is no inertia about it, and wd is the least that fits:
- * the spin about the line is kept, and nothing damps it. The pseudo-inverse does that, and D w stands for its part
- * across the line.
+ * Where all particles lie on a line through the point there is no inertia about it, and wd is the least that
+ * fits: the spin about the line is kept, and nothing damps it. The pseudo-inverse does that, and D w stands
+ * for its part across the line.
  *
- * Source: 4.2, 5.2, 6.4, with theta-dot read as the angular velocity; (417) in body axes; (419) by turning the attitude.
+ * Source: 4.2, 5.2, 6.4, with theta-dot read as the angular velocity; (417) in body axes; (419) by turning
+ * the attitude.
  */
 #ifndef MCT_SYSTEMS_ROTOR_H
 #define MCT_SYSTEMS_ROTOR_H
@@ -22,18 +23,18 @@
 
 enum { MCT_ROTOR_COLUMNS = 4 }; /* of a particle: mass, place in body axes */
 
-/* The columns of a row of particles, and the least inertia about an axis, of the largest, that counts as one. */
 extern const mct_field mct_rotor_columns[MCT_ROTOR_COLUMNS];
+
+/* A principal moment below this part of the largest counts as none. */
 #define MCT_LEAST_MOMENT 1e-10
 
 /*
- * Constants for steps of h seconds, but for the damping, which is 0: of particles, rows of mass [kg], above 0, and place
- * [m], that turn about their centre or about the origin. `body` and the principal moments about that point are for who
- * needs them.
- * Returns MCT_ERROR_SINGULAR when no axis has inertia.
+ * Constants for steps of h seconds, but for the damping, which is 0: of particles, rows of mass [kg], above
+ * 0, and place [m], that turn about their centre or about the origin. `body` and the principal moments about
+ * that point are for who needs them. Returns MCT_ERROR_SINGULAR when no axis has inertia.
  */
-mct_status mct_rotor_prepare(const double *particles, int count, bool about_center, double h, mct_rotor *rotor,
-                             mct_body *body, double *moments);
+mct_status mct_rotor_prepare(const double *particles, int count, bool about_center, double h,
+                             mct_rotor *rotor, mct_body *body, double *moments);
 
 /* Where the particles are about the point, for the Gauss engine; q: the attitude. */
 void mct_rotor_place(const mct_rotor *rotor, const mct_hyperdual *q, mct_hyperdual (*position)[3]);
@@ -48,7 +49,8 @@ MCT_INLINE void mct_apply(const mct_real (*matrix)[3], const mct_real *x, mct_re
 }
 
 /* wd x arm + w x (w x arm): acceleration of a point of a body that turns, all in the same axes. */
-MCT_INLINE void mct_turning_acceleration(const mct_real *w, const mct_real *wd, const mct_real *arm, mct_real *out)
+MCT_INLINE void mct_turning_acceleration(const mct_real *w, const mct_real *wd, const mct_real *arm,
+                                         mct_real *out)
 {
     mct_real velocity[3], inward[3];
     mct_cross(w, arm, velocity);
@@ -62,7 +64,8 @@ MCT_INLINE void mct_turning_acceleration(const mct_real *w, const mct_real *wd, 
 /* --- the right-hand side --- */
 
 /* D of a velocity or an angular velocity v, and what its square adds along v: d(D v)/dv' = D + slope v v'. */
-MCT_INLINE mct_real mct_damping(unsigned effects, mct_real viscous, mct_real drag, const mct_real *v, mct_real *slope)
+MCT_INLINE mct_real mct_damping(unsigned effects, mct_real viscous, mct_real drag, const mct_real *v,
+                                mct_real *slope)
 {
     mct_real sum = 0;
     *slope = 0;
@@ -79,8 +82,8 @@ MCT_INLINE mct_real mct_damping(unsigned effects, mct_real viscous, mct_real dra
 }
 
 /* couple - D w - w x I w, where is_gyroscopic; returns D. */
-MCT_INLINE mct_real mct_rotor_drive(const mct_rotor *k, unsigned effects, bool is_gyroscopic, const mct_real *couple,
-                                    const mct_real *w, mct_real *slope, mct_real *sum)
+MCT_INLINE mct_real mct_rotor_drive(const mct_rotor *k, unsigned effects, bool is_gyroscopic,
+                                    const mct_real *couple, const mct_real *w, mct_real *slope, mct_real *sum)
 {
     const mct_real damping = mct_damping(effects, k->viscous, k->drag, w, slope);
     const mct_real idle = mct_dot(k->idle_axis, w);
@@ -100,8 +103,8 @@ MCT_INLINE mct_real mct_rotor_drive(const mct_rotor *k, unsigned effects, bool i
 }
 
 /* wd under a couple. */
-MCT_INLINE void mct_rotor_accelerate(const mct_rotor *k, unsigned effects, const mct_real *couple, const mct_real *w,
-                                     mct_real *wd)
+MCT_INLINE void mct_rotor_accelerate(const mct_rotor *k, unsigned effects, const mct_real *couple,
+                                     const mct_real *w, mct_real *wd)
 {
     mct_real slope, sum[3];
     (void)mct_rotor_drive(k, effects, true, couple, w, &slope, sum);
@@ -124,7 +127,8 @@ MCT_INLINE void mct_rotor_renormalise(const mct_real *q, mct_real *dq)
 }
 
 /* end = q turned at w, in body axes, for `time`; dq: by how much. */
-MCT_INLINE void mct_rotor_drift(const mct_real *q, const mct_real *w, mct_real time, mct_real *dq, mct_real *end)
+MCT_INLINE void mct_rotor_drift(const mct_real *q, const mct_real *w, mct_real time, mct_real *dq,
+                                mct_real *end)
 {
     const mct_real u[3] = {time * w[0], time * w[1], time * w[2]};
     mct_quaternion_turn_body(q, u, dq);
@@ -147,10 +151,11 @@ MCT_INLINE void mct_solve_columns(mct_real (*column)[3], const mct_real *b, mct_
 }
 
 /*
- * dw of `euler`: the couple alone, the damping at the new rate, (I + h D) dw = h (couple - D w). The body turns later.
+ * dw of `euler`: the couple alone, the damping at the new rate, (I + h D) dw = h (couple - D w). The body
+ * turns later.
  */
-MCT_INLINE void mct_rotor_push(const mct_rotor *k, unsigned effects, const mct_real *couple, const mct_real *w,
-                               mct_real *dw)
+MCT_INLINE void mct_rotor_push(const mct_rotor *k, unsigned effects, const mct_real *couple,
+                               const mct_real *w, mct_real *dw)
 {
     mct_real slope, sum[3], column[3][3];
     const mct_real damping = mct_rotor_drive(k, effects, false, couple, w, &slope, sum);
@@ -172,11 +177,11 @@ MCT_INLINE void mct_rotor_push(const mct_rotor *k, unsigned effects, const mct_r
 }
 
 /*
- * dw of `leap`, with f = couple - D w - w x I w: (I - h/2 df/dw') dw = h f, which is Kahan's bilinear form of what is
- * quadratic in w.
+ * dw of `leap`, with f = couple - D w - w x I w: (I - h/2 df/dw') dw = h f, which is Kahan's bilinear form of
+ * what is quadratic in w.
  */
-MCT_INLINE void mct_rotor_kick(const mct_rotor *k, unsigned effects, const mct_real *couple, const mct_real *w,
-                               mct_real *dw)
+MCT_INLINE void mct_rotor_kick(const mct_rotor *k, unsigned effects, const mct_real *couple,
+                               const mct_real *w, mct_real *dw)
 {
     mct_real slope, sum[3], momentum[3], column[3][3];
     const mct_real damping = mct_rotor_drive(k, effects, true, couple, w, &slope, sum);
@@ -212,8 +217,8 @@ MCT_INLINE void mct_turn_change(const mct_real *e, const mct_real *y, mct_real *
 }
 
 /*
- * The body turns at w for h under its angular momentum, which stays in space: e, the turn, and dw = I^-1 (r' - 1) I w. A
- * spin about the idle axis takes no part: it would turn the momentum's frame and not the momentum.
+ * The body turns at w for h under its angular momentum, which stays in space: 1 + e, the turn r, and
+ * dw = I^-1 (r' - 1) I w. A spin about the idle axis takes no part: the momentum has nothing along it.
  */
 MCT_INLINE void mct_rotor_carry(const mct_rotor *k, const mct_real *w, mct_real *e, mct_real *dw)
 {

@@ -101,7 +101,9 @@ static void json_coordinate(json *out, const mct_coordinate *coordinate)
     json_range(out, &coordinate->position);
     json_text(out, "doc", coordinate->position.doc);
     json_boolean(out, "is_angle", coordinate->is_angle);
-    json_quantity(out, "rate", &coordinate->rate);
+    if (coordinate->rate.name != NULL) { /* not of a process */
+        json_quantity(out, "rate", &coordinate->rate);
+    }
     json_quantity(out, "encoder", &coordinate->encoder);
     json_number(out, "position_weight", coordinate->position_weight);
     json_number(out, "rate_weight", coordinate->rate_weight);
@@ -442,9 +444,10 @@ static void print_system(const mct_system *system)
     }
     print_effects(system);
     print_input(system);
-    printf("Particles:%s", !system->lists_particles     ? ""
-                           : system->particle_count > 0 ? " those listed, or else"
-                                                        : " those listed");
+    printf("Particles:");
+    if (system->lists_particles) {
+        printf(" one for each row of %s%s", system->lists[0].name, system->particle_count > 0 ? ":" : "");
+    }
     for (int i = 0; i < system->particle_count; i++) {
         printf(" %s", system->particle_names[i]);
     }

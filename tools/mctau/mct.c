@@ -372,7 +372,7 @@ static void print_motion(const mct_result *at, bool christoffel)
 static void print_process(const mct_result *at)
 {
     static const char *units[3] = {"m^2", "m^2", "m^2"};
-    print_matrix(at, "M: J'J, and the ridge on its diagonal", at->M, units);
+    print_matrix(at, "M of M update = J'(d - f), by the method", at->M, units);
     printf("\n  %-18s %18s %18s\n", "", "tau = J'(d - f)", "next update");
     for (int i = 0; i < at->coordinates; i++) {
         printf("  %-18s", at->coordinate_names[i]);

@@ -44,7 +44,8 @@ def panels(run, **options):
     if any(run.table["applied"]):
         made.append(plot.input_(run, **options))
     left = [c for c in run.system["coordinates"] if not c["is_angle"]]
-    fields = [f for f in left + [c["rate"] for c in run.system["coordinates"]] if f["name"] in run.table]
+    turning = [c["rate"] for c in run.system["coordinates"] if not run.is_process and c["name"] not in run.table]
+    fields = turning or left + [c["rate"] for c in run.system["coordinates"]]
     return (made + [plot.state(run, field, **options) for field in fields[: 2 - len(made)]])[:2]
 
 

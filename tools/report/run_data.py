@@ -183,8 +183,8 @@ class Run:
         if self.angle is None:  # no motor: the first angle, if there is one
             self.angle = next((c for c in coordinates if c["is_angle"]), None)
         self.angle_name = self.angle and self.angle["name"]
-        self.rate_names = [coordinate["rate"]["name"] for coordinate in coordinates]
-        self.is_process = not any(self.rate_names)
+        self.rate_names = [coordinate["rate"]["name"] for coordinate in coordinates if "rate" in coordinate]
+        self.is_process = not self.rate_names
         self.degrees = [folded(math.degrees(angle)) for angle in self.table.get(self.angle_name, [])]
         self.controlled = f"{self.angle_name}_estimate" in self.table
         self.modes = spans(self.time, self.table["mode"], self.duration)
@@ -238,7 +238,7 @@ class Run:
 
     def turning_points(self, begin, end):
         """Times at which the pendulum changes its direction."""
-        rates = self.table[self.angle["rate"]["name"]] if self.angle else []
+        rates = self.table[self.angle["rate"]["name"]] if self.angle and "rate" in self.angle else []
         return [
             self.time[i]
             for i in range(1, len(rates))
