@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "mctau/matrix.h"
+
 /* What place() below needs of the present state. */
 typedef struct {
     const mct_system *system;
@@ -67,6 +69,27 @@ static void place(const void *context, mct_hyperdual time, const mct_hyperdual *
     }
 }
 
+/*
+ * Whether M has an inverse to within rounding: M_ii (M^-1)_ii is 1 for a coordinate that moves particles of its own, and
+ * without bound for one that moves none that the others do not.
+ */
+static bool is_regular(const mct_gauss_motion *motion, int n)
+{
+    double M[MCT_GAUSS_MAX_COORDINATES * MCT_GAUSS_MAX_COORDINATES];
+    double inverse[MCT_GAUSS_MAX_COORDINATES * MCT_GAUSS_MAX_COORDINATES];
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            M[i * n + j] = (double)motion->M[i][j];
+        }
+    }
+    bool regular = mct_matrix_inverse(n, M, inverse) == MCT_OK;
+    for (int i = 0; i < n && regular; i++) {
+        const double amplified = M[i * n + i] * inverse[i * n + i];
+        regular = amplified > 0 && amplified < 1 / (16 * (double)MCT_REAL_EPSILON);
+    }
+    return regular;
+}
+
 mct_status mct_judge(const mct_system *system, const void *constants, int particles, const mct_real *x,
                      const mct_evaluation *closed, mct_judgement *out)
 {
@@ -110,6 +133,7 @@ mct_status mct_judge(const mct_system *system, const void *constants, int partic
     }
     /* First without couples, for J'f; tau holds it even where the accelerations are not defined. */
     status = mct_gauss_dynamics(&engine, force, NULL, &out->workspace, &out->motion);
+    status = status == MCT_OK && !is_regular(&out->motion, n) ? MCT_ERROR_SINGULAR : status;
     if (status != MCT_OK && status != MCT_ERROR_SINGULAR) {
         return status;
     }

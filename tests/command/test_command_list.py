@@ -5,8 +5,9 @@ def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(res
     found = result("list")
     assert [key for key in ("systems", "effects", "steppers", "controllers") if key not in found] == []
     assert [system["name"] for system in found["systems"]] == [
-        "cart_pole", "reaction_wheel", "pendulum", "spring_pendulum", "linked_particles", "moving_base",
-        "rotating_frame", "solid_pendulum", "block", "falling_sphere"]  # fmt: skip
+        "cart_pole", "reaction_wheel", "pendulum", "spring_pendulum", "linked_particles",
+        "particle_pendulum", "moving_base", "rotating_frame", "ball_joint", "fixed_axis", "solid_pendulum", "rigid_body",
+        "chain", "block", "falling_sphere"]  # fmt: skip
     assert {stepper["name"]: stepper["order"] for stepper in found["steppers"]} == {
         "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "expo": 4, "discrete": 1,
     }  # fmt: skip
@@ -18,10 +19,14 @@ def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(res
 
 def test_every_parameter_and_coordinate_has_unit_range_and_a_default_within(result):
     for system in result("list")["systems"]:
-        rates = [coordinate["rate"] for coordinate in system["coordinates"]]
-        for field in system["parameters"] + system["coordinates"] + rates:
+        rates = [coordinate["rate"] for coordinate in system["coordinates"] if "rate" in coordinate]
+        columns = [column for rows in system["lists"] for column in rows["columns"]]
+        for field in system["parameters"] + system["coordinates"] + rates + columns:
+            if "choices" in field:
+                assert field["default"] in field["choices"], field["name"]
+                continue
             assert isinstance(field["unit"], str)
-            assert field["minimum"] <= field["default"] <= field["maximum"], field["name"]
+            assert field["minimum"] <= field["default"] <= field["maximum"] or field in columns, field["name"]
         assert all(parameter["doc"] for parameter in system["parameters"])
 
 

