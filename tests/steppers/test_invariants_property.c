@@ -97,7 +97,8 @@ static void length_rule(motion *self, const char *name)
         return; /* it gains energy until it blows up */
     }
     const double allowed = 4 * (double)MCT_REAL_EPSILON;
-    check(self->found.drift[KEPT_LENGTH] <= allowed, name, KEPT_LENGTH, self->found.drift[KEPT_LENGTH], allowed);
+    check(self->found.drift[KEPT_LENGTH] <= allowed, name, KEPT_LENGTH, self->found.drift[KEPT_LENGTH],
+          allowed);
 }
 
 static void test_a_quaternion_keeps_its_length_for_ever(void)
@@ -235,7 +236,8 @@ static void test_seed_is_anti_damped_at_the_rate_that_theory_gives(void)
         const double before = energy_of(&now.plant) - (double)middle.potential_energy;
         step_plant(&now.plant, 0, lround(4 / (square * now.scene.dt * now.scene.dt)));
         const double grown = 0.5 * log((energy_of(&now.plant) - (double)middle.potential_energy) / before);
-        printf("%s: in the time in which theory lets it grow by e, by e^%.3f\n", mct_systems[system]->name, grown);
+        printf("%s: in the time in which theory lets it grow by e, by e^%.3f\n", mct_systems[system]->name,
+               grown);
         TEST_ASSERT_DOUBLE_WITHIN(0.01 + sqrt(square) * now.scene.dt, 1, grown);
     }
     TEST_ASSERT_GREATER_THAN(3, oscillators);

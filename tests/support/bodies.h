@@ -1,4 +1,7 @@
-/* Bodies by the textbook, for tests of ball_joint and rigid_body: from the scene's numbers, not from their constants. */
+/*
+ * Bodies by the textbook, for tests of ball_joint and rigid_body: from the scene's numbers, not from their
+ * constants.
+ */
 #ifndef MCT_TEST_BODIES_H
 #define MCT_TEST_BODIES_H
 
@@ -7,16 +10,23 @@
 #include "support/quad.h"
 #include "support/scenes.h"
 
-enum { BODY_W = 4, BODY_X = 7, BODY_V = 10, BODY_STATES = 13 }; /* attitude, angular velocity in body axes, place, velocity */
+enum {
+    BODY_W = 4,
+    BODY_X = 7,
+    BODY_V = 10,
+    BODY_STATES = 13
+}; /* attitude, angular velocity in body axes, place, velocity */
 
-/* What turns and moves: all about the point that it turns about, in body axes but for what is called space. */
+/*
+ * What turns and moves: all about the point that it turns about, in body axes but for what is called space.
+ */
 typedef struct {
     bool is_on_pivot;
     quad mass, inertia[3][3];
     quad first_moment[3]; /* about the pivot; 0 about the centre */
     quad gravity[3];
-    quad friction;            /* of the angular velocity */
-    quad drag, angular_drag;  /* of the squares */
+    quad friction;           /* of the angular velocity */
+    quad drag, angular_drag; /* of the squares */
     int forces;
     bool in_body[4];
     quad point[4][3], force[4][3];
@@ -196,7 +206,8 @@ static inline double body_reference(const textbook_body *body, const quad *start
 }
 
 /* How much the motion amplifies an error of its angular velocity that is made on the way; at least 1. */
-static inline double body_growth(const textbook_body *body, const quad *start, double duration, const quad *end)
+static inline double body_growth(const textbook_body *body, const quad *start, double duration,
+                                 const quad *end)
 {
     enum { PLACES = 5 };
     const quad nudge = (quad)1e-14;
@@ -209,7 +220,8 @@ static inline double body_growth(const textbook_body *body, const quad *start, d
             quad x[BODY_STATES];
             memcpy(x, way, sizeof x);
             x[BODY_W + i] += nudge;
-            quad_extrapolate(body_rate, body, 0, x, BODY_STATES, left, (long)(40 * duration) * (PLACES - place) / PLACES);
+            quad_extrapolate(body_rate, body, 0, x, BODY_STATES, left,
+                             (long)(40 * duration) * (PLACES - place) / PLACES);
             const double factor = body_distance(x, end) / (double)nudge;
             growth = factor > growth ? factor : growth;
         }

@@ -31,7 +31,8 @@ bool invariant_scene(mct_scene *scene, int system, int stepper, bool with_weight
             scene->parameters[i] = 0;
         }
     }
-    const bool only_falls = with_weight && model->attitude != MCT_ATTITUDE_NONE && model->coordinate_count > 3;
+    const bool only_falls =
+        with_weight && model->attitude != MCT_ATTITUDE_NONE && model->coordinate_count > 3;
     if (model->is_process || only_falls || model->kernel(stepper, scene->effects) == NULL) {
         return false;
     }
@@ -59,9 +60,9 @@ static void evaluate_near(const mct_plant *plant, int k, int along, double amoun
     plant->system->evaluate(&plant->constants, plant->effects, state.x, 0, out);
 }
 
-static bool differs(double a, double b, double scale)
+static bool differs(mct_real a, mct_real b, double scale)
 {
-    return fabs(a - b) > 64 * (double)MCT_REAL_EPSILON * scale;
+    return fabs((double)a - (double)b) > 64 * (double)MCT_REAL_EPSILON * scale;
 }
 
 enum { STATES_TRIED = 3 };
@@ -228,6 +229,6 @@ void invariants_look(invariants *self, const mct_plant *plant)
         self->drift[KEPT_LENGTH] = fmax(self->drift[KEPT_LENGTH], length_error(plant));
     }
     for (int kind = 0; kind < KEPT_COUNT && plant->diverged_ticks > 0; kind++) {
-        self->drift[kind] = INFINITY;
+        self->drift[kind] = HUGE_VAL;
     }
 }

@@ -1,6 +1,7 @@
 /*
- * The ball joint in motion: a single particle against its equation in Cartesian coordinates and against the great circles of
- * the source's Figure 14, a body against Euler's law in quadruple precision, a symmetric top against steady precession.
+ * The ball joint in motion: a single particle against its equation in Cartesian coordinates and against the
+ * great circles of the source's Figure 14, a body against Euler's law in quadruple precision, a symmetric top
+ * against steady precession.
  */
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +20,8 @@ void tearDown(void)
 {
 }
 
-static mct_scene scene_with(const double *particles, int count, int stepper, uint32_t effects, double friction)
+static mct_scene scene_with(const double *particles, int count, int stepper, uint32_t effects,
+                            double friction)
 {
     mct_scene scene = scene_of(ball_joint, stepper, effects);
     set_rows(&scene, 0, particles, 4 * count);
@@ -44,7 +46,10 @@ static void place_of(const mct_plant *plant, double *x)
     memcpy(x, now.position[0], 3 * sizeof *x);
 }
 
-/* With no force the particle runs x = b cos Wt + (w x b)/W sin Wt, W the part of w across b; the part along b stays. */
+/*
+ * With no force the particle runs x = b cos Wt + (w x b)/W sin Wt, W the part of w across b; the part along b
+ * stays.
+ */
 static void check_great_circle(int stepper, const double *w, double duration, double tolerance)
 {
     const double particle[4] = {1, sqrt(2), sqrt(2), 0};
@@ -71,8 +76,8 @@ static void check_great_circle(int stepper, const double *w, double duration, do
         }
         kept = fmax(kept, fabs(spin - along));
     }
-    printf("Figure 14 from (%g, %g, %g), %s: once round in %.4f s; off by %.1e m in %g s, spin by %.1e\n", w[0], w[1], w[2],
-           mct_steppers[stepper].name, 6.283185307179586 / rate, worst, duration, kept);
+    printf("Figure 14 from (%g, %g, %g), %s: once round in %.4f s; off by %.1e m in %g s, spin by %.1e\n",
+           w[0], w[1], w[2], mct_steppers[stepper].name, 6.283185307179586 / rate, worst, duration, kept);
     TEST_ASSERT_TRUE(worst < tolerance);
     TEST_ASSERT_TRUE(kept < tolerance);
 }
@@ -123,7 +128,10 @@ static double pendulum_reference(const spherical_pendulum *model, const quad *st
     return worst;
 }
 
-/* The last one stands 1 mrad from upright: it amplifies an error of its start, and the comparison is divided by that. */
+/*
+ * The last one stands 1 mrad from upright: it amplifies an error of its start, and the comparison is divided
+ * by that.
+ */
 static void test_a_single_particle_is_a_spherical_pendulum_in_quadruple_precision(void)
 {
     static const struct {
@@ -137,7 +145,8 @@ static void test_a_single_particle_is_a_spherical_pendulum_in_quadruple_precisio
     };
     for (int i = 0; i < 3; i++) {
         const double *b = motions[i].particle + 1;
-        mct_scene scene = scene_with(motions[i].particle, 1, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_VISCOUS, motions[i].friction);
+        mct_scene scene = scene_with(motions[i].particle, 1, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_VISCOUS,
+                                     motions[i].friction);
         spherical_pendulum model = {.mass = (quad)motions[i].particle[0],
                                     .friction = (quad)motions[i].friction,
                                     .gravity = {0, (quad)-9.81, 0}};
@@ -169,7 +178,10 @@ static void test_a_single_particle_is_a_spherical_pendulum_in_quadruple_precisio
     }
 }
 
-/* What gravity leaves alone: energy and the angular momentum about the vertical, over half a million swings' steps. */
+/*
+ * What gravity leaves alone: energy and the angular momentum about the vertical, over half a million swings'
+ * steps.
+ */
 static void test_a_spherical_pendulum_keeps_energy_and_vertical_angular_momentum_over_a_million_steps(void)
 {
     static const struct {
@@ -207,7 +219,8 @@ static void test_a_spherical_pendulum_keeps_energy_and_vertical_angular_momentum
 
 /* --- bodies --- */
 
-static const double lumps[16] = {0.3, 0.4, 0.1, 0, 0.2, -0.2, 0.5, 0.1, 0.1, 0, -0.7, 0.4, 0.2, 0.1, 0.2, -0.6};
+static const double lumps[16] = {0.3, 0.4, 0.1,  0,   0.2, -0.2, 0.5, 0.1,
+                                 0.1, 0,   -0.7, 0.4, 0.2, 0.1,  0.2, -0.6};
 static const double tilted[4] = {0.9, 0.3, -0.2, 0.25};
 static const double turning[3] = {2, -3, 4};
 
@@ -267,14 +280,15 @@ static void test_each_stepper_has_its_order_with_all_effects(void)
 }
 
 /*
- * Three balls on a ring, A about the pivot across the axis, C along it: with the axis at th from upright it goes round the
- * vertical at p where A cos th p^2 - C s p + m g l = 0, s being the part of w along the axis.
+ * Three balls on a ring, A about the pivot across the axis, C along it: with the axis at th from upright it
+ * goes round the vertical at p where A cos th p^2 - C s p + m g l = 0, s being the part of w along the axis.
  */
 static void test_a_symmetric_top_precesses_steadily(void)
 {
     const double ring = 0.2, height = 0.1, mass = 0.05, tilt = 0.5, spin = 12;
     const double half = ring / 2, side = ring * sqrt(3) / 2;
-    const double particles[12] = {mass, ring, height, 0, mass, -half, height, side, mass, -half, height, -side};
+    const double particles[12] = {mass,   ring, height, 0,     mass,   -half,
+                                  height, side, mass,   -half, height, -side};
     const double C = 3 * mass * ring * ring;
     const double A = C / 2 + 3 * mass * height * height;
     const double moment = 3 * mass * 9.81 * height;
@@ -303,7 +317,8 @@ static void test_a_symmetric_top_precesses_steadily(void)
                 worst = fmax(worst, fabs(centre / height - expected[k]));
             }
         }
-        printf("steady precession at %.3f rad/s, spin %g rad/s: axis off by %.1e rad in 5 s\n", p, spin, worst);
+        printf("steady precession at %.3f rad/s, spin %g rad/s: axis off by %.1e rad in 5 s\n", p, spin,
+               worst);
         TEST_ASSERT_TRUE(worst < 1e-8);
     }
 }

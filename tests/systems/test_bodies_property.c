@@ -1,9 +1,10 @@
 /*
- * ball_joint and rigid_body: their closed forms against the generic Gauss engine, and against forces and energies that are
- * written here once more; what there is without inertia about an axis; what is refused.
+ * ball_joint and rigid_body: their closed forms against the generic Gauss engine, and against forces and
+ * energies that are written here once more; what there is without inertia about an axis; what is refused.
  *
- * Tolerances: 1e-12 in double, 2000 roundings in float, relative to the size of the terms that meet in a result. An
- * acceleration is relative to the torques over the least moment: that is what the particles' arms leave of it.
+ * Tolerances: 1e-12 in double, 2000 roundings in float, relative to the size of the terms that meet in a
+ * result. An acceleration is relative to the torques over the least moment: that is what the particles' arms
+ * leave of it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -250,7 +251,8 @@ static void for_all_trials(void (*check)(trial *))
     for (int n = 0; n < TRIALS; n++) {
         const bool is_free = n % 2 == 1;
         const int count = (int)random_in(&random, is_free ? 3 : 2, MOST + 1);
-        randomise(&now, &random, is_free ? rigid_body : ball_joint, count, is_free ? thrown[n / 2 % 4] : pivoted[n / 2 % 4]);
+        randomise(&now, &random, is_free ? rigid_body : ball_joint, count,
+                  is_free ? thrown[n / 2 % 4] : pivoted[n / 2 % 4]);
         check(&now);
     }
 }
@@ -273,23 +275,27 @@ static void check_against_engine(trial *self)
     if (least_moment(self) < 1e-4 * most) { /* the engine's own digits go */
         return;
     }
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_judge(system, &self->constants, self->particles, self->x, out, &self->judged));
+    TEST_ASSERT_EQUAL_INT(MCT_OK,
+                          mct_judge(system, &self->constants, self->particles, self->x, out, &self->judged));
     const mct_gauss_motion *const motion = &self->judged.motion;
     const double turning = self->torque / least_moment(self);
     const double moving = self->force / self->mass;
     for (int i = 0; i < self->n; i++) {
         const bool turns = i >= self->n - 3;
         for (int j = 0; j < self->n; j++) {
-            check_near((double)out->M[i][j], (double)motion->M[i][j], self->mass * fmax(1, self->reach * self->reach));
+            check_near((double)out->M[i][j], (double)motion->M[i][j],
+                       self->mass * fmax(1, self->reach * self->reach));
         }
-        check_near((double)out->Cv[i], (double)motion->Cv[i], turns ? self->torque : self->mass * self->reach * dot(self->w, self->w));
+        check_near((double)out->Cv[i], (double)motion->Cv[i],
+                   turns ? self->torque : self->mass * self->reach * dot(self->w, self->w));
         check_near((double)out->tau[i], self->tau[i], turns ? self->torque : self->force);
         check_near((double)out->acceleration[i], (double)motion->acceleration[i],
                    turns ? turning : moving + self->reach * (turning + dot(self->w, self->w)));
     }
     for (int n = 0; n < self->particles; n++) {
         const double *row = row_of(self, n);
-        const double inertial = moving + self->reach * (turning + dot(self->w, self->w)) + size(self->gravity);
+        const double inertial =
+            moving + self->reach * (turning + dot(self->w, self->w)) + size(self->gravity);
         double arm[3];
         arm_of(self, row + 1, arm);
         TEST_ASSERT_EQUAL_DOUBLE(row[0], (double)out->mass[n]);
@@ -297,7 +303,8 @@ static void check_against_engine(trial *self)
             const double origin = self->is_free ? (double)self->x[i] : 0;
             check_near((double)out->position[n][i], origin + arm[i], 2 + self->reach);
             check_near((double)out->force[n][i], row[0] * self->gravity[i], row[0] * size(self->gravity));
-            check_near((double)out->constraint_force[n][i], (double)motion->constraint_force[n][i], row[0] * inertial);
+            check_near((double)out->constraint_force[n][i], (double)motion->constraint_force[n][i],
+                       row[0] * inertial);
         }
     }
 }
@@ -350,13 +357,17 @@ static void check_power(trial *self)
     }
     const double powers = (double)out->power_input + (double)out->power_viscous;
     check_near((double)out->kinetic_energy, kinetic, kinetic);
-    check_near((double)out->potential_energy, potential, self->mass * size(self->gravity) * (4 + self->reach));
+    check_near((double)out->potential_energy, potential,
+               self->mass * size(self->gravity) * (4 + self->reach));
     check_near(powers, applied, power_size);
     check_near(through_constraints, powers, power_size);
     TEST_ASSERT_TRUE(out->power_viscous <= 0);
 }
 
-/* m xdd = f + e with weights f: so the energy changes by the work of e, which is that of forces, drag and friction alone. */
+/*
+ * m xdd = f + e with weights f: so the energy changes by the work of e, which is that of forces, drag and
+ * friction alone.
+ */
 static void test_the_powers_add_up_to_the_change_of_energy(void)
 {
     for_all_trials(check_power);
@@ -364,7 +375,10 @@ static void test_the_powers_add_up_to_the_change_of_energy(void)
 
 /* --- no inertia about an axis --- */
 
-/* Particles on a line through the pivot: M a + C v = tau still, nothing along the line, and no friction there. */
+/*
+ * Particles on a line through the pivot: M a + C v = tau still, nothing along the line, and no friction
+ * there.
+ */
 static void test_particles_on_a_line_have_the_least_acceleration(void)
 {
     static trial now;
@@ -444,16 +458,19 @@ static void momentum_of(const mct_plant *plant, double *momentum)
 }
 
 /*
- * A free body of three different moments, spun about the middle axis, a million steps of 1 ms. What each stepper keeps: the
- * length of the quaternion, all of them; the angular momentum in space, euler to rounding; the energy, leap and rk4.
+ * A free body of three different moments, spun about the middle axis, a million steps of 1 ms. What each
+ * stepper keeps: the length of the quaternion, all of them; the angular momentum in space, euler to rounding;
+ * the energy, leap and rk4.
  */
 static void test_what_a_free_body_keeps_over_a_million_steps(void)
 {
     static const struct {
         int stepper;
         double energy, momentum; /* of themselves; in double */
-    } cases[] = {{MCT_STEPPER_EULER, 1, 1e-12}, {MCT_STEPPER_LEAP, 1e-4, 1e-2}, {MCT_STEPPER_RK4, 1e-7, 1e-7}};
-    static const double jacks[24] = {1, 0.5, 0, 0, 1, -0.5, 0, 0, 1, 0, 0.4, 0, 1, 0, -0.4, 0, 1, 0, 0, 0.2, 1, 0, 0, -0.2};
+    } cases[] = {
+        {MCT_STEPPER_EULER, 1, 1e-12}, {MCT_STEPPER_LEAP, 1e-4, 1e-2}, {MCT_STEPPER_RK4, 1e-7, 1e-7}};
+    static const double jacks[24] = {1, 0.5, 0,    0, 1, -0.5, 0, 0,   1, 0, 0.4, 0,
+                                     1, 0,   -0.4, 0, 1, 0,    0, 0.2, 1, 0, 0,   -0.2};
     for (int c = 0; c < 6; c++) {
         const int system = c % 2 == 0 ? rigid_body : ball_joint;
         mct_scene scene = scene_of(system, cases[c / 2].stepper, 0);
@@ -482,8 +499,8 @@ static void test_what_a_free_body_keeps_over_a_million_steps(void)
             length = fmax(length, fabs(square - 1) / 2);
             drift = fmax(drift, fabs(energy_of(&plant) / energy - 1));
         }
-        printf("%s, %s, 1e6 steps: |q| off by %.1e, energy by %.1e, angular momentum by %.1e\n", plant.system->name,
-               mct_steppers[scene.stepper].name, length, drift, off);
+        printf("%s, %s, 1e6 steps: |q| off by %.1e, energy by %.1e, angular momentum by %.1e\n",
+               plant.system->name, mct_steppers[scene.stepper].name, length, drift, off);
         const double rounding = 100 * (double)MCT_REAL_EPSILON;
         TEST_ASSERT_TRUE(length < 2 * (double)MCT_REAL_EPSILON);
         TEST_ASSERT_TRUE(drift < cases[c / 2].energy + rounding);
@@ -499,10 +516,9 @@ static void check_refused(int system, const char *text, const char *sentence)
     mct_scene scene;
     mct_constants constants;
     mct_message why = {""};
-    snprintf(scene_text, sizeof scene_text, "scene.system = \"%s\"\nscene.duration = 1\nparameters.%s\n", mct_systems[system]->name,
-             text);
-    mct_status status =
-        mct_scene_read(scene_text, strlen(scene_text), "body", NULL, 0, &scene, &why);
+    snprintf(scene_text, sizeof scene_text, "scene.system = \"%s\"\nscene.duration = 1\nparameters.%s\n",
+             mct_systems[system]->name, text);
+    mct_status status = mct_scene_read(scene_text, strlen(scene_text), "body", NULL, 0, &scene, &why);
     if (status == MCT_OK) {
         status = mct_systems[system]->prepare(&scene, 1e-3, &constants, &why);
     }
@@ -513,20 +529,27 @@ static void check_refused(int system, const char *text, const char *sentence)
 static void test_what_is_no_body_is_refused_with_its_figures(void)
 {
 #define BARE "particles = []\nparameters.mass = 2\nparameters."
-    check_refused(rigid_body, "particles = [[0, 1, 1, 1]]", "parameters.particles: found 0 kg as mass of row 1");
-    check_refused(ball_joint, "particles = [[-1, 1, 1, 1]]", "parameters.particles: found -1 kg as mass of row 1");
+    check_refused(rigid_body, "particles = [[0, 1, 1, 1]]",
+                  "parameters.particles: found 0 kg as mass of row 1");
+    check_refused(ball_joint, "particles = [[-1, 1, 1, 1]]",
+                  "parameters.particles: found -1 kg as mass of row 1");
     check_refused(ball_joint, "particles = []", "parameters.particles: found 0 rows; allowed 1 to 32 rows");
-    check_refused(ball_joint, "particles = [[1, 0, 0, 0], [2, 0, 0, 0]]", "parameters.particles: found 2, all at the pivot");
+    check_refused(ball_joint, "particles = [[1, 0, 0, 0], [2, 0, 0, 0]]",
+                  "parameters.particles: found 2, all at the pivot");
     check_refused(rigid_body, "particles = [[1, 0, 0, 0], [2, 1, 0, 0]]", "particles on one line");
     check_refused(rigid_body, "mass = 2", "parameters.mass: found 2 kg beside 4 particles");
     check_refused(rigid_body, "centre = [0, 0.5, 0]", "parameters.centre_2: found 0.5 m beside 4 particles");
     check_refused(rigid_body, "particles = []", "parameters.mass: found 0 kg and no particles");
-    check_refused(rigid_body, BARE "inertia = [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]", "parameters.inertia: found 0.1 kg m^2 in row 1, "
-                                                                                   "column 2, and 0 opposite");
-    check_refused(rigid_body, BARE "inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 3]]", "principal moments 1, 1 and 3 kg m^2");
+    check_refused(rigid_body, BARE "inertia = [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]",
+                  "parameters.inertia: found 0.1 kg m^2 in row 1, "
+                  "column 2, and 0 opposite");
+    check_refused(rigid_body, BARE "inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 3]]",
+                  "principal moments 1, 1 and 3 kg m^2");
     check_refused(rigid_body, BARE "inertia = [[1, 0, 0], [0, -1, 0], [0, 0, 1]]", "allowed none below 0");
-    check_refused(rigid_body, BARE "inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]", "allowed none below 1e-10 of the largest");
-    check_refused(rigid_body, "forces = [[\"bodies\", 0, 0, 0, 1, 0, 0]]", "allowed 0 to 16 rows of frame (space, body)");
+    check_refused(rigid_body, BARE "inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 0]]",
+                  "allowed none below 1e-10 of the largest");
+    check_refused(rigid_body, "forces = [[\"bodies\", 0, 0, 0, 1, 0, 0]]",
+                  "allowed 0 to 16 rows of frame (space, body)");
 }
 
 int main(void)

@@ -1,6 +1,6 @@
 /*
- * The free rigid body in motion: against Euler's laws in quadruple precision, against Jacobi's elliptic functions, and the
- * orders of its steppers with everything on.
+ * The free rigid body in motion: against Euler's laws in quadruple precision, against Jacobi's elliptic
+ * functions, and the orders of its steppers with everything on.
  */
 #include <math.h>
 #include <stdio.h>
@@ -31,13 +31,12 @@ typedef struct {
     double velocity[3], w[3];
 } motion;
 
-/* The third flips over again and again. The last one is about to: all that it does in 11 s is to amplify an error. */
+/*
+ * The third flips over again and again. The last one is about to: all that it does in 11 s is to amplify an
+ * error.
+ */
 static const motion motions[] = {
-    {.name = "moments 1, 2, 3, free",
-     .duration = 5,
-     .effects = 0,
-     .moments = {1, 2, 3},
-     .w = {0.5, 2, 0.3}},
+    {.name = "moments 1, 2, 3, free", .duration = 5, .effects = 0, .moments = {1, 2, 3}, .w = {0.5, 2, 0.3}},
     {.name = "four particles, thrown, pushed and dragged",
      .duration = 5,
      .effects = MCT_GRAVITY | MCT_FORCES | MCT_DRAG,
@@ -127,7 +126,8 @@ static double error_of(const motion *self, int stepper, double dt, double durati
     return body_distance(end, expected);
 }
 
-static double reference_of_motion(const motion *self, double duration, quad *start, quad *end, textbook_body *body)
+static double reference_of_motion(const motion *self, double duration, quad *start, quad *end,
+                                  textbook_body *body)
 {
     mct_scene scene = scene_of_motion(self, MCT_STEPPER_RK4, 1e-3);
     mct_plant plant;
@@ -149,10 +149,12 @@ static void test_motion_follows_eulers_laws_in_quadruple_precision(void)
         printf("%s, %g s at 1 ms, growth %.1e:", motions[i].name, duration, growth);
         FOR_EACH_STEPPER(stepper, rigid_body, motions[i].effects)
         {
-            printf(" %s %.1e", mct_steppers[stepper].name, error_of(&motions[i], stepper, 1e-3, duration, end));
+            printf(" %s %.1e", mct_steppers[stepper].name,
+                   error_of(&motions[i], stepper, 1e-3, duration, end));
         }
         printf("\n");
-        TEST_ASSERT_TRUE(error_of(&motions[i], MCT_STEPPER_RK4, 1e-3, duration, end) < 1e-9 * (growth > 1e6 ? growth : 1));
+        TEST_ASSERT_TRUE(error_of(&motions[i], MCT_STEPPER_RK4, 1e-3, duration, end) <
+                         1e-9 * (growth > 1e6 ? growth : 1));
     }
 }
 
@@ -191,8 +193,8 @@ static void jacobi(double u, double m, double *sn, double *cn, double *dn)
 }
 
 /*
- * Free, with I1 < I2 < I3 and L^2 > 2 E I2, from w2 = 0: w1 = a cn, w2 = b sn, w3 = c dn (Landau, Lifshitz, Mechanics,
- * section 37). Attitude: the angular momentum stays in space.
+ * Free, with I1 < I2 < I3 and L^2 > 2 E I2, from w2 = 0: w1 = a cn, w2 = b sn, w3 = c dn (Landau, Lifshitz,
+ * Mechanics, section 37). Attitude: the angular momentum stays in space.
  */
 static void test_a_free_body_turns_by_the_elliptic_functions_and_keeps_its_angular_momentum(void)
 {
@@ -203,7 +205,8 @@ static void test_a_free_body_turns_by_the_elliptic_functions_and_keeps_its_angul
     const double square = I[0] * I[0] * 0.81 + I[2] * I[2] * 1.69;
     const double most = sqrt((twice_energy * I[2] - square) / (I[1] * (I[2] - I[1])));
     const double rate = sqrt((I[2] - I[1]) * (square - twice_energy * I[0]) / (I[0] * I[1] * I[2]));
-    const double m = (I[1] - I[0]) * (twice_energy * I[2] - square) / ((I[2] - I[1]) * (square - twice_energy * I[0]));
+    const double m =
+        (I[1] - I[0]) * (twice_energy * I[2] - square) / ((I[2] - I[1]) * (square - twice_energy * I[0]));
     const mct_scene scene = scene_of_motion(&free_body, MCT_STEPPER_RK4, 1e-3);
     mct_plant plant;
     double worst = 0, turned = 0;
@@ -225,12 +228,15 @@ static void test_a_free_body_turns_by_the_elliptic_functions_and_keeps_its_angul
             turned = fmax(turned, fabs((double)momentum - I[i] * start[i]));
         }
     }
-    printf("rk4, 10 s at 1 ms: off the elliptic functions by %.1e rad/s, angular momentum by %.1e\n", worst, turned);
+    printf("rk4, 10 s at 1 ms: off the elliptic functions by %.1e rad/s, angular momentum by %.1e\n", worst,
+           turned);
     TEST_ASSERT_TRUE(worst < 1e-11);
     TEST_ASSERT_TRUE(turned < 1e-11);
 }
 
-/* A body that is described twice, by its particles and by the mass, inertia and centre that follow from them. */
+/*
+ * A body that is described twice, by its particles and by the mass, inertia and centre that follow from them.
+ */
 static void test_both_descriptions_of_a_body_move_alike(void)
 {
     mct_scene scene = scene_of_motion(&motions[1], MCT_STEPPER_RK4, 1e-3);
