@@ -48,17 +48,17 @@ enum {
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 0, 1e6, 0, "of the body, when it has no particles"),
     [INERTIA] = MOMENT("1_1", "about the centre, in body axes, when it has no particles"),
-    [INERTIA + 1] = MOMENT("1_2", ""),
-    [INERTIA + 2] = MOMENT("1_3", ""),
-    [INERTIA + 3] = MOMENT("2_1", ""),
-    [INERTIA + 4] = MOMENT("2_2", ""),
-    [INERTIA + 5] = MOMENT("2_3", ""),
-    [INERTIA + 6] = MOMENT("3_1", ""),
-    [INERTIA + 7] = MOMENT("3_2", ""),
-    [INERTIA + 8] = MOMENT("3_3", ""),
+    [INERTIA + 1] = MOMENT("1_2", "row 1, column 2 of it"),
+    [INERTIA + 2] = MOMENT("1_3", "row 1, column 3 of it"),
+    [INERTIA + 3] = MOMENT("2_1", "row 2, column 1 of it"),
+    [INERTIA + 4] = MOMENT("2_2", "row 2, column 2 of it"),
+    [INERTIA + 5] = MOMENT("2_3", "row 2, column 3 of it"),
+    [INERTIA + 6] = MOMENT("3_1", "row 3, column 1 of it"),
+    [INERTIA + 7] = MOMENT("3_2", "row 3, column 2 of it"),
+    [INERTIA + 8] = MOMENT("3_3", "row 3, column 3 of it"),
     [CENTER] = PLACE("1", "of mass, in body axes, when it has no particles"),
-    [CENTER + 1] = PLACE("2", ""),
-    [CENTER + 2] = PLACE("3", ""),
+    [CENTER + 1] = PLACE("2", "its second coordinate"),
+    [CENTER + 2] = PLACE("3", "its third coordinate"),
     [GRAVITY] = MCT_QUANTITY("gravity_1", "m/s^2", -1e4, 1e4, 0, "gravitational acceleration, to the right"),
     [GRAVITY + 1] = MCT_QUANTITY("gravity_2", "m/s^2", -1e4, 1e4, -9.81, "upwards"),
     [GRAVITY + 2] = MCT_QUANTITY("gravity_3", "m/s^2", -1e4, 1e4, 0, "to the viewer"),
@@ -111,7 +111,7 @@ static const mct_row_list lists[] = {
                 .fewest_rows = 0,
                 .most_rows = 16,
                 .standard_rows = 0,
-                .standard = racket},
+                .standard = racket /* none of it */},
 };
 
 #define SHIFT(axis, what)                                                                      \
@@ -278,6 +278,9 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     if (status == MCT_ERROR_SINGULAR || mct_dot(k->rotor.idle_axis, k->rotor.idle_axis) > 0) {
         return refuse_line(rows, moments, why);
     }
+    if (status != MCT_OK) {
+        return status;
+    }
     k->rotor.drag = (mct_real)((scene->effects & MCT_DRAG) ? p[ANGULAR_DRAG] : 0);
     k->drag = (mct_real)((scene->effects & MCT_DRAG) ? p[DRAG] : 0);
     k->inverse_mass = (mct_real)(1 / body.mass);
@@ -285,7 +288,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
         k->gravity[i] = (mct_real)((scene->effects & MCT_GRAVITY) ? p[GRAVITY + i] : 0);
     }
     prepare_forces(scene, body.center, k);
-    return status;
+    return MCT_OK;
 }
 
 /* --- what acts --- */

@@ -25,8 +25,7 @@ static mct_scene held_arm(int stepper, double friction)
 
 static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void)
 {
-    FOR_EACH_STEPPER(stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB)
-    {
+    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB) {
         const mct_scene scene = held_arm(stepper, 0.3);
         mct_plant plant;
         start_plant(&plant, &scene);
@@ -40,8 +39,7 @@ static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void)
 
 static void test_an_arm_that_friction_cannot_hold_starts_to_move(void)
 {
-    FOR_EACH_STEPPER(stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB)
-    {
+    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB) {
         const mct_scene scene = held_arm(stepper, 0.24);
         mct_plant plant;
         start_plant(&plant, &scene);
@@ -53,8 +51,7 @@ static void test_an_arm_that_friction_cannot_hold_starts_to_move(void)
 /* A cart alone: v^2 / (2 a), a = F / m. The tick in which it stops is off by at most h^2 a / 8. */
 static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_rests(void)
 {
-    FOR_EACH_STEPPER(stepper, CART_POLE, MCT_COULOMB)
-    {
+    FOR_EACH_STEPPER (stepper, CART_POLE, MCT_COULOMB) {
         mct_scene scene = scene_of(CART_POLE, stepper, MCT_COULOMB);
         *parameter_of(&scene, "cart_coulomb") = 2;
         *parameter_of(&scene, "pole_mass") = 0.5;

@@ -8,7 +8,8 @@
 #define AXIS  "[scene]\nsystem = \"fixed_axis\"\n[parameters]\n"
 #define BODY  "[scene]\nsystem = \"rigid_body\"\n[parameters]\n"
 #define CHAIN "[scene]\nsystem = \"chain\"\n[parameters]\n"
-#define ROW   "mass (1e-06 to 1000000 kg), b1 (-10000 to 10000 m), b2 (-10000 to 10000 m), b3 (-10000 to 10000 m)"
+#define ROW \
+    "mass (1e-06 to 1000000 kg), b1 (-10000 to 10000 m), b2 (-10000 to 10000 m), b3 (-10000 to 10000 m)"
 
 static mct_scene scene;
 static mct_message why;
@@ -89,10 +90,12 @@ static void test_a_quaternion_of_another_length_is_noted_and_one_of_none_refused
 {
     assert_read(BODY "[initial]\nattitude = [0, 3, 0, 4]");
     TEST_ASSERT_TRUE(mct_scene_note(&scene, 0, &why));
-    TEST_ASSERT_EQUAL_STRING("initial.attitude: found a quaternion of length 5; it is taken with length 1", why.text);
+    TEST_ASSERT_EQUAL_STRING("initial.attitude: found a quaternion of length 5; it is taken with length 1",
+                             why.text);
     TEST_ASSERT_FALSE(mct_scene_note(&scene, 1, &why));
-    assert_refused(BODY "[initial]\nattitude = [0, 0, 0, 0]",
-                   "x.toml:5: initial.attitude_w: found a quaternion of length 0; allowed any other, as 1, 0, 0, 0");
+    assert_refused(
+        BODY "[initial]\nattitude = [0, 0, 0, 0]",
+        "x.toml:5: initial.attitude_w: found a quaternion of length 0; allowed any other, as 1, 0, 0, 0");
 }
 
 static void test_a_list_of_rows_is_as_long_as_it_is_written(void)
@@ -112,23 +115,28 @@ static void test_a_name_in_a_row_is_one_of_its_columns(void)
     TEST_ASSERT_EQUAL_INT(14, scene.lists[1].count);
     TEST_ASSERT_TRUE(scene.lists[1].values[0] != scene.lists[1].values[7]);
     TEST_ASSERT_TRUE(read_with(BODY "forces = [[\"moon\", 0, 0, 0, 1, 2, 3]]", NULL) != MCT_OK);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why.text, "x.toml:4: parameters.forces: found [[\"moon\", 0, 0, 0, 1, 2, 3]], "
-                                                  "with a name that is unknown; allowed 0 to "),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why.text,
+                                        "x.toml:4: parameters.forces: found [[\"moon\", 0, 0, 0, 1, 2, 3]], "
+                                        "with a name that is unknown; allowed 0 to "),
                                  why.text);
 }
 
 static void test_what_a_vector_is_not_is_refused(void)
 {
-    assert_refused(AXIS "gravity = [1, 2]",
-                   "x.toml:4: parameters.gravity: found [1, 2]; allowed a list of 3: gravity_1, gravity_2, gravity_3");
-    assert_refused(AXIS "gravity = 9.81",
-                   "x.toml:4: parameters.gravity: found 9.81; allowed a list of 3: gravity_1, gravity_2, gravity_3");
+    assert_refused(
+        AXIS "gravity = [1, 2]",
+        "x.toml:4: parameters.gravity: found [1, 2]; allowed a list of 3: gravity_1, gravity_2, gravity_3");
+    assert_refused(
+        AXIS "gravity = 9.81",
+        "x.toml:4: parameters.gravity: found 9.81; allowed a list of 3: gravity_1, gravity_2, gravity_3");
     assert_refused(AXIS "gravity = [1, 2e9, 3]",
                    "x.toml:4: parameters.gravity_2: found 2e9 m/s^2; allowed -10000 to 10000 m/s^2");
-    assert_refused(AXIS "gravity = [1, \"x\", 3]", "x.toml:4: parameters.gravity_2: found \"x\", a text, where a number "
-                                                   "belongs; allowed -10000 to 10000 m/s^2");
-    assert_refused(AXIS "friction = [1]", "x.toml:4: parameters.friction: found [1], a list, where a number belongs; "
-                                          "allowed 0 to 1000000 N m s");
+    assert_refused(AXIS "gravity = [1, \"x\", 3]",
+                   "x.toml:4: parameters.gravity_2: found \"x\", a text, where a number "
+                   "belongs; allowed -10000 to 10000 m/s^2");
+    assert_refused(AXIS "friction = [1]",
+                   "x.toml:4: parameters.friction: found [1], a list, where a number belongs; "
+                   "allowed 0 to 1000000 N m s");
 }
 
 static void test_what_a_row_is_not_is_refused(void)
@@ -137,15 +145,19 @@ static void test_what_a_row_is_not_is_refused(void)
                    "x.toml:4: parameters.particles: found [1, 0, 0] as row 1; allowed 1 to 32 rows of " ROW);
     assert_refused(AXIS "particles = [[1, 0, 1, 0], 2]",
                    "x.toml:4: parameters.particles: found 2 as row 2; allowed 1 to 32 rows of " ROW);
-    assert_refused(AXIS "particles = []", "x.toml:4: parameters.particles: found 0 rows; allowed 1 to 32 rows of " ROW);
-    assert_refused(AXIS "particles = [[1, 0, 1, 0], [-1, 0, 0, 0]]",
-                   "x.toml:4: parameters.particles: found -1 kg as mass of row 2; allowed 1e-06 to 1000000 kg");
+    assert_refused(AXIS "particles = []",
+                   "x.toml:4: parameters.particles: found 0 rows; allowed 1 to 32 rows of " ROW);
+    assert_refused(
+        AXIS "particles = [[1, 0, 1, 0], [-1, 0, 0, 0]]",
+        "x.toml:4: parameters.particles: found -1 kg as mass of row 2; allowed 1e-06 to 1000000 kg");
     assert_refused(CHAIN "link_lengths = [1, 0]",
                    "x.toml:4: parameters.link_lengths: found 0 m as number 2; allowed 0.0001 to 10000 m");
-    assert_refused(CHAIN "link_lengths = [1, true]", "x.toml:4: parameters.link_lengths: found [1, true], where numbers "
-                                                     "belong; allowed 1 to 16 numbers from 0.0001 to 10000 m");
-    assert_refused(CHAIN "link_lengths = [1, 1]\n[initial]\nangle_3 = 1",
-                   "x.toml:6: initial.angle_3: found a state that the scene has not; allowed with a longer list");
+    assert_refused(CHAIN "link_lengths = [1, true]",
+                   "x.toml:4: parameters.link_lengths: found [1, true], where numbers "
+                   "belong; allowed 1 to 16 numbers from 0.0001 to 10000 m");
+    assert_refused(
+        CHAIN "link_lengths = [1, 1]\n[initial]\nangle_3 = 1",
+        "x.toml:6: initial.angle_3: found a state that the scene has not; allowed with a longer list");
 }
 
 static void test_more_rows_than_there_is_room_for_are_refused_with_the_bound(void)
@@ -157,7 +169,8 @@ static void test_more_rows_than_there_is_room_for_are_refused_with_the_bound(voi
     strcat(text, "]");
     assert_refused(text, "x.toml:4: parameters.particles: found 33 rows; allowed 1 to 32 rows of " ROW);
     assert_refused(CHAIN "link_lengths = [1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1]",
-                   "x.toml:4: parameters.link_lengths: found 17 numbers; allowed 1 to 16 numbers from 0.0001 to 10000 m");
+                   "x.toml:4: parameters.link_lengths: found 17 numbers; allowed 1 to 16 numbers from 0.0001 "
+                   "to 10000 m");
 }
 
 static void test_a_scene_changed_by_hand_is_checked_as_well(void)
@@ -168,8 +181,8 @@ static void test_a_scene_changed_by_hand_is_checked_as_well(void)
     scene.lists[0].count = 4;
     scene.lists[0].values[0] = -2;
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_check(&scene, &why));
-    TEST_ASSERT_EQUAL_STRING("parameters.particles: found -2 kg as mass of row 1; allowed 1e-06 to 1000000 kg",
-                             why.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "parameters.particles: found -2 kg as mass of row 1; allowed 1e-06 to 1000000 kg", why.text);
     assert_read(CHAIN);
     scene.parameters[2] = 0.5; /* method, a name */
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_check(&scene, &why));

@@ -77,8 +77,7 @@ static void test_seed_is_anti_damped_at_the_rate_that_theory_gives_and_the_other
     printf("amplitude of seed grows by %.4f 1/s, theory %.4f\n", seed, theory);
     TEST_ASSERT_DOUBLE_WITHIN(0.02 * theory, theory,
                               seed); /* swings up to 7 degrees are 0.1 % slower than small ones */
-    FOR_EACH_STEPPER(stepper, REACTION_WHEEL, MCT_GRAVITY)
-    {
+    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY) {
         if (stepper == MCT_STEPPER_SEED) {
             continue;
         }
@@ -91,8 +90,7 @@ static void test_seed_is_anti_damped_at_the_rate_that_theory_gives_and_the_other
 /* A tick of n substeps is n steps of a plant whose tick is the n-th part: not a bit differs. */
 static void test_substeps_are_steps(void)
 {
-    FOR_EACH_STEPPER(stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE)
-    {
+    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE) {
         mct_scene scene = scene_of(REACTION_WHEEL, stepper, MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE);
         scene.initial[0] = 2;
         mct_scene fine = scene;
@@ -119,8 +117,7 @@ static void test_rest_is_rest_to_the_last_bit_for_every_stepper_and_effect_set(v
 {
     for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
         for (uint32_t effects = 0; effects < 24; effects++) {
-            FOR_EACH_STEPPER(stepper, system, effects)
-            {
+            FOR_EACH_STEPPER (stepper, system, effects) {
                 mct_scene scene = scene_of(system, stepper, effects);
                 scene.initial[mct_systems[system]->actuation->upright_coordinate] = 0;
                 mct_plant plant;

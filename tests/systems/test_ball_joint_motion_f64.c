@@ -257,8 +257,7 @@ static void test_a_body_on_a_pivot_follows_eulers_law_in_quadruple_precision(voi
     TEST_ASSERT_TRUE(lumps_reference(5, &body, start, end) < 1e-14);
     const double growth = body_growth(&body, start, 5, end);
     printf("four particles with friction, 5 s at 1 ms, growth %.1e:", growth);
-    FOR_EACH_STEPPER(stepper, ball_joint, MCT_GRAVITY | MCT_VISCOUS)
-    {
+    FOR_EACH_STEPPER (stepper, ball_joint, MCT_GRAVITY | MCT_VISCOUS) {
         printf(" %s %.1e", mct_steppers[stepper].name, lumps_error(stepper, 1e-3, 5, end, start));
     }
     printf("\n");
@@ -270,8 +269,7 @@ static void test_each_stepper_has_its_order_with_all_effects(void)
     quad start[BODY_STATES], end[BODY_STATES];
     textbook_body body;
     (void)lumps_reference(1, &body, start, end);
-    FOR_EACH_STEPPER(stepper, ball_joint, MCT_GRAVITY | MCT_VISCOUS)
-    {
+    FOR_EACH_STEPPER (stepper, ball_joint, MCT_GRAVITY | MCT_VISCOUS) {
         const double coarse = lumps_error(stepper, 4e-3, 1, end, start);
         const double order = log2(coarse / lumps_error(stepper, 2e-3, 1, end, start));
         printf("%s: order %.2f\n", mct_steppers[stepper].name, order);

@@ -181,8 +181,7 @@ static void test_powers_add_up_to_the_rate_of_the_energy(void)
 
 static void test_a_block_held_on_a_slope_does_not_creep(void)
 {
-    FOR_EACH_STEPPER(stepper, block(), MCT_GRAVITY | MCT_COULOMB | MCT_FORCING)
-    {
+    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB | MCT_FORCING) {
         mct_scene scene = scene_with(stepper, MCT_GRAVITY | MCT_COULOMB | MCT_FORCING);
         *parameter_of(&scene, "slope") =
             0.5; /* tan = 0.546: between the coefficients, so it is the static one */
@@ -198,8 +197,7 @@ static void test_a_block_held_on_a_slope_does_not_creep(void)
 
 static void test_a_block_on_a_belt_is_carried_at_the_speed_of_the_belt(void)
 {
-    FOR_EACH_STEPPER(stepper, block(), MCT_GRAVITY | MCT_COULOMB)
-    {
+    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB) {
         mct_scene scene = scene_with(stepper, MCT_GRAVITY | MCT_COULOMB);
         *parameter_of(&scene, "belt_speed") = 0.3;
         scene.initial[1] = 2;

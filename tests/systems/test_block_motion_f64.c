@@ -49,8 +49,7 @@ static double stop_error(int stepper, double dt)
 
 static void test_a_sliding_block_stops_after_v2_over_2_mu_g(void)
 {
-    FOR_EACH_STEPPER(stepper, block(), MCT_GRAVITY | MCT_COULOMB)
-    {
+    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB) {
         const double error = stop_error(stepper, 1e-3);
         printf("stop, %s: %.1e m, at h/2 %.1e m\n", mct_steppers[stepper].name, error,
                stop_error(stepper, 5e-4));
@@ -284,8 +283,7 @@ static void test_five_seconds_of_motion_are_those_of_the_closed_form(void)
         TEST_ASSERT_EQUAL_INT(events, again);
         TEST_ASSERT_DOUBLE_WITHIN(1e-15, (double)truth.x, (double)finer.x);
         printf("%s, %d events:", c->name, events);
-        FOR_EACH_STEPPER(stepper, block(), effects)
-        {
+        FOR_EACH_STEPPER (stepper, block(), effects) {
             mct_scene scene = scene_of(block(), stepper, effects);
             *parameter_of(&scene, "mass") = c->mass;
             *parameter_of(&scene, "static_coefficient") = c->hold;

@@ -117,8 +117,7 @@ static void test_equation_452_holds_as_corrected_and_not_as_printed(void)
 
 static void test_a_step_too_long_for_an_explicit_stepper_is_refused(void)
 {
-    FOR_EACH_STEPPER(stepper, sphere(), mct_systems[sphere()]->effects)
-    {
+    FOR_EACH_STEPPER (stepper, sphere(), mct_systems[sphere()]->effects) {
         mct_scene scene = scene_of(sphere(), stepper, mct_systems[sphere()]->effects);
         scene.dt = 0.01; /* against 1.2 ms */
         mct_plant plant;

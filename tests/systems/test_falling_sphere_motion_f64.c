@@ -110,8 +110,7 @@ static void test_five_seconds_of_motion_are_those_of_the_closed_form(void)
             v = side * speed;
         }
         printf("%s, b h / m %.1e:", c->name, (double)B * 1e-3);
-        FOR_EACH_STEPPER(stepper, sphere(), c->effects)
-        {
+        FOR_EACH_STEPPER (stepper, sphere(), c->effects) {
             mct_scene scene = scene_of(sphere(), stepper, c->effects);
             *parameter_of(&scene, "radius") = c->radius;
             *parameter_of(&scene, "density") = c->density;

@@ -246,8 +246,7 @@ static void test_motion_follows_the_sources_torque_in_quadruple_precision(void)
         follow_textbook(&now, end);
         const double growth = growth_of(&now, end);
         printf("%s, 5 s at 1 ms:", now.name);
-        FOR_EACH_STEPPER(stepper, scene_of_motion(&now, 0).system, MCT_GRAVITY | MCT_VISCOUS)
-        {
+        FOR_EACH_STEPPER (stepper, scene_of_motion(&now, 0).system, MCT_GRAVITY | MCT_VISCOUS) {
             const double error = error_of(&now, stepper, 1e-3, end);
             printf(" %s %.1e", mct_steppers[stepper].name, error);
             TEST_ASSERT_TRUE(stepper != MCT_STEPPER_RK4 || error <= 1e-9 * growth);
@@ -261,8 +260,7 @@ static void test_each_stepper_has_its_order(void)
     for (int i = 0; i < MOTIONS; i += 4) { /* the metronome, and the one askew in all */
         quad end[2];
         follow_textbook(&motions[i], end);
-        FOR_EACH_STEPPER(stepper, scene_of_motion(&motions[i], 0).system, MCT_GRAVITY | MCT_VISCOUS)
-        {
+        FOR_EACH_STEPPER (stepper, scene_of_motion(&motions[i], 0).system, MCT_GRAVITY | MCT_VISCOUS) {
             const double order =
                 log2(error_of(&motions[i], stepper, 4e-3, end) / error_of(&motions[i], stepper, 2e-3, end));
             printf("%s, %s: order %.2f\n", motions[i].name, mct_steppers[stepper].name, order);

@@ -446,8 +446,7 @@ static void test_dry_friction_holds_up_to_the_moment_of_the_weight(void)
     for (int system = 0; system < SYSTEMS; system++) {
         static trial now;
         const int number = number_of(names[system]);
-        FOR_EACH_STEPPER(stepper, number, MCT_GRAVITY | MCT_COULOMB)
-        {
+        FOR_EACH_STEPPER (stepper, number, MCT_GRAVITY | MCT_COULOMB) {
             for (int slips = 0; slips < 2; slips++) {
                 mct_scene scene = scene_of(number, stepper, MCT_GRAVITY);
                 scene.initial[0] = 1.1;

@@ -147,8 +147,7 @@ static void test_motion_follows_eulers_laws_in_quadruple_precision(void)
         const double growth = body_growth(&body, start, duration, end);
         TEST_ASSERT_TRUE(inexact < 1e-14);
         printf("%s, %g s at 1 ms, growth %.1e:", motions[i].name, duration, growth);
-        FOR_EACH_STEPPER(stepper, rigid_body, motions[i].effects)
-        {
+        FOR_EACH_STEPPER (stepper, rigid_body, motions[i].effects) {
             printf(" %s %.1e", mct_steppers[stepper].name,
                    error_of(&motions[i], stepper, 1e-3, duration, end));
         }
@@ -163,8 +162,7 @@ static void test_each_stepper_has_its_order_with_all_effects(void)
     quad start[BODY_STATES], end[BODY_STATES];
     textbook_body body;
     (void)reference_of_motion(&motions[1], 1, start, end, &body);
-    FOR_EACH_STEPPER(stepper, rigid_body, motions[1].effects)
-    {
+    FOR_EACH_STEPPER (stepper, rigid_body, motions[1].effects) {
         const double coarse = error_of(&motions[1], stepper, 4e-3, 1, end);
         const double order = log2(coarse / error_of(&motions[1], stepper, 2e-3, 1, end));
         printf("%s: order %.2f\n", mct_steppers[stepper].name, order);
