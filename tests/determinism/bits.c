@@ -69,17 +69,20 @@ static uint64_t with_state(uint64_t hash, const mct_system *system, const mct_st
     return hash;
 }
 
-/* The matrices as far as two coordinates, all else as long as it is. */
-static uint64_t with_evaluation(uint64_t hash, const mct_evaluation *at)
+/* Of two coordinates and four particles at least, as all systems once had. */
+static uint64_t with_evaluation(uint64_t hash, const mct_scene *scene, const mct_evaluation *at)
 {
-    enum { N = 2 };
-    for (int i = 0; i < N; i++) {
+    const size_t n = (size_t)mct_coordinate_count(scene);
+    const size_t count = (size_t)mct_particle_count(scene);
+    const size_t N = n > 2 ? n : 2;
+    const size_t particles = count > 4 ? count : 4;
+    for (size_t i = 0; i < N; i++) {
         hash = with_reals(hash, at->M[i], N);
     }
-    hash = with_reals(hash, &at->position[0][0], 3 * 4);
-    hash = with_reals(hash, at->mass, 4);
+    hash = with_reals(hash, &at->position[0][0], 3 * particles);
+    hash = with_reals(hash, at->mass, particles);
     hash = with_real(hash, at->potential_energy);
-    for (int i = 0; i < N; i++) {
+    for (size_t i = 0; i < N; i++) {
         hash = with_reals(hash, at->C[i], N);
     }
     hash = with_reals(hash, at->Cv, N);
@@ -88,7 +91,7 @@ static uint64_t with_evaluation(uint64_t hash, const mct_evaluation *at)
     hash = with_reals(hash, at->tau, N);
     hash = with_reals(hash, at->acceleration, N);
     hash = with_real(hash, at->current);
-    hash = with_reals(hash, &at->constraint_force[0][0], 3 * 4);
+    hash = with_reals(hash, &at->constraint_force[0][0], 3 * particles);
     hash = with_real(hash, at->power_input);
     hash = with_real(hash, at->power_viscous);
     hash = with_real(hash, at->power_coulomb);
@@ -214,7 +217,7 @@ static void print_evaluations(int system, const char *motor, uint32_t motor_effe
     for (int tick = 0; tick < TICKS; tick++) {
         mct_plant_step(&plant, (mct_real)(full_input(&scene) * input_at(tick)));
         mct_plant_evaluate(&plant, &at);
-        hash = with_evaluation(hash, &at);
+        hash = with_evaluation(hash, &scene, &at);
     }
     printf("%s evaluate %s %s %016llx\n", precision, mct_systems[system]->name, motor,
            (unsigned long long)hash);
