@@ -173,7 +173,7 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
  * Checks what single keys cannot say: that the stepper suits the system and the effects, that it can follow
  * the motor's time constant at this step, that a controller has a motor and encoders, that [input] and
  * [controller] are not both given, that lists of times rise and match their values, that the duration is a
- * whole number of ticks; and that every value is within its range. Called by mct_scene_read; call it after
+ * whole number of ticks, and what the system has against its parameters; and that every value is within its range. Called by mct_scene_read; call it after
  * changing a scene by hand.
  * @param why  on failure one sentence: "table.key: found ...; allowed ..."; may be NULL
  * @return MCT_OK; MCT_ERROR_RANGE, MCT_ERROR_BOUND (a single value), MCT_ERROR_UNSUITED (values that do not

@@ -1,5 +1,8 @@
 #include "check.h"
 
+#include <string.h>
+
+#include "mctau/constants.h"
 #include "mctau/matrix.h"
 #include "mctau/stepper.h"
 #include "text.h"
@@ -473,6 +476,39 @@ static mct_status examine_duration(const mct_scene *scene, mct_blame *blame, mct
     return MCT_ERROR_UNSUITED;
 }
 
+/* What only the system itself can say: its constants are computed, and thrown away. Its sentence is "table.key: ...". */
+static mct_status examine_system(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                                 mct_message *sentence)
+{
+    mct_constants constants;
+    mct_message why;
+    mct_message_clear(&why);
+    if (system->prepare(scene, scene->dt / scene->substeps, &constants, &why) == MCT_OK) {
+        return MCT_OK;
+    }
+    blame->table = "parameters";
+    const char *text = why.text;
+    for (int table = 0; table < MCT_TABLE_COUNT && text == why.text; table++) {
+        const mct_span name = mct_text_span(mct_table_name(table));
+        const mct_span begin = {why.text, name.length};
+        if (mct_text_length(why.text) > name.length && mct_span_equal(begin, name) &&
+            why.text[name.length] == '.') {
+            blame->table = mct_table_name(table);
+            text += name.length + 1;
+        }
+    }
+    size_t length = 0;
+    while (text > why.text && text[length] != ':' && text[length] != '\0' &&
+           length + 1 < sizeof blame->key_text) {
+        blame->key_text[length] = text[length];
+        length++;
+    }
+    blame->key_text[length] = '\0';
+    blame->key = length > 0 ? blame->key_text : "*";
+    mct_message_add(sentence, length > 0 && text[length] == ':' ? text + length + 2 : text + length);
+    return MCT_ERROR_UNSUITED;
+}
+
 mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
 {
     blame->table = "scene";
@@ -490,6 +526,7 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     status = status != MCT_OK ? status : examine_input(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_attitude(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_duration(scene, blame, sentence);
+    status = status != MCT_OK ? status : examine_system(scene, system, blame, sentence);
     return status;
 }
 

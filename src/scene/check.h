@@ -6,7 +6,8 @@
 
 typedef struct {
     const char *table;
-    const char *key;
+    const char *key;   /* or the name of a vector */
+    char key_text[48]; /* what `key` points to when no descriptor has it */
 } mct_blame;
 
 /* As mct_scene_check, but with the key to blame apart from the sentence about it. */

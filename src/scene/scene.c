@@ -161,24 +161,22 @@ static bool find_key(int table, const mct_system *system, mct_span name, mct_sce
     return false;
 }
 
-/* Whether `component` is that of a vector or a matrix: gravity_2 or inertia_1_3, attitude_w. */
-static bool is_component(mct_span vector, const char *component)
+/* Whether a name is that of a component of a vector or a matrix: gravity_2, inertia_1_3, attitude_w. */
+static bool is_component(mct_span vector, mct_span name)
 {
-    const mct_span whole = mct_text_span(component);
-    const mct_span begin = {component, vector.length};
-    if (whole.length < vector.length + 2 || component[vector.length] != '_' ||
-        !mct_span_equal(begin, vector)) {
+    const mct_span begin = {name.start, vector.length};
+    if (name.length < vector.length + 2 || !mct_span_equal(begin, vector)) {
         return false;
     }
-    const size_t rest = whole.length - vector.length;
-    for (size_t i = 1; i < rest; i += 2) { /* _1, _1_3 */
-        const char c = component[vector.length + i];
-        const bool is_axis = (c >= '1' && c <= '3') || (c >= 'w' && c <= 'z');
-        if (!is_axis || component[vector.length + i - 1] != '_') {
+    const char *const rest = name.start + vector.length; /* _1, _1_3 */
+    const size_t length = name.length - vector.length;
+    for (size_t i = 0; i + 1 < length; i += 2) {
+        const char c = rest[i + 1];
+        if (rest[i] != '_' || !((c >= '1' && c <= '3') || (c >= 'w' && c <= 'z'))) {
             return false;
         }
     }
-    return rest % 2 == 0;
+    return length % 2 == 0;
 }
 
 /* Component `number` of a vector; the one behind the last has no name. */
@@ -186,7 +184,7 @@ static mct_scene_key component_at(int table, const mct_system *system, mct_span 
 {
     for (int i = 0, count = 0; i < mct_key_count(table, system); i++) {
         const mct_scene_key key = mct_key_at(table, system, i);
-        if (is_component(vector, key.field.name) && count++ == number) {
+        if (is_component(vector, mct_text_span(key.field.name)) && count++ == number) {
             return key;
         }
     }
@@ -573,10 +571,10 @@ static mct_status read_override(const reader *self, const mct_override *given_ov
     return mct_toml_read_value(given_override->origin, entry, self->why);
 }
 
-/* Whether what is written as `written` sets the key: it is its name, or that of its vector. */
-static bool gives(mct_span written, const char *key)
+/* Whether what is written sets a key or a part of it: it is its name, or that of its vector, or of a component. */
+static bool gives(mct_span written, mct_span key)
 {
-    return mct_span_is(written, key) || is_component(written, key);
+    return mct_span_equal(written, key) || is_component(written, key) || is_component(key, written);
 }
 
 /* The last value given for a key, NULL when none is; an override is split into `storage`. */
@@ -586,7 +584,7 @@ static given find_given(const reader *self, const char *table, const char *key, 
     for (int i = self->override_count - 1; i >= 0; i--) {
         const mct_override *const candidate = &self->overrides[i];
         if (read_override(self, candidate, storage) == MCT_OK && mct_span_is(storage->table, table) &&
-            gives(storage->key, key)) {
+            gives(storage->key, mct_text_span(key))) {
             found.entry = storage;
             found.origin = candidate->origin != NULL ? candidate->origin : "";
             return found;
@@ -594,7 +592,7 @@ static given find_given(const reader *self, const char *table, const char *key, 
     }
     for (int i = 0; i < self->toml.entry_count && found.entry == NULL; i++) {
         const mct_toml_entry *const entry = &self->toml.entries[i];
-        if (mct_span_is(entry->table, table) && gives(entry->key, key)) {
+        if (mct_span_is(entry->table, table) && gives(entry->key, mct_text_span(key))) {
             found.entry = entry;
         }
     }

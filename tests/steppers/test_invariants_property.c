@@ -16,7 +16,7 @@
 #include "unity.h"
 
 #define ROUNDING (1000 * (double)MCT_REAL_EPSILON)
-enum { LOOK_EVERY = 101, STARTS = 3, SHORT = TEST_CASES(10000), LONG = TEST_CASES(200000) };
+enum { LOOK_EVERY = 101, STARTS = 3, SHORT = 10000, LONG = 200000 };
 
 void setUp(void)
 {
