@@ -126,7 +126,7 @@ typedef struct {
  *
  * The choices of scene.system and scene.stepper are the names in mct_systems and mct_steppers; `choices` of
  * these two fields is NULL. Texts are empty by default but for scene.hal, "sim"; lists are empty. A scene
- * must name its system; the stepper it leaves out is the most accurate one that suits.
+ * must name its system; the stepper it leaves out is the most accurate one that suits, but no series.
  */
 extern const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT];
 

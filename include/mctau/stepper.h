@@ -12,6 +12,10 @@ enum {
     MCT_STEPPER_EULER,
     MCT_STEPPER_LEAP,
     MCT_STEPPER_RK4,
+    MCT_STEPPER_TAYLOR4,
+    MCT_STEPPER_TAYLOR6,
+    MCT_STEPPER_TAYLOR8,
+    MCT_STEPPER_TAYLOR12,
     MCT_STEPPER_EXPO,
     MCT_STEPPER_DISCRETE,
     MCT_STEPPER_COUNT
@@ -23,6 +27,8 @@ typedef struct {
     const char *doc; /**< scheme, role, cost */
     /** Largest h R/L at which the scheme follows an inductive motor; 0 when any will do. */
     double motor_stability_limit;
+    /** Made of derivatives: no kernel where an effect has a kink (coulomb, drag), and only for scenes that name it. */
+    bool is_series;
 } mct_stepper;
 
 /** All steppers, by the enumeration above. */

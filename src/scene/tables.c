@@ -50,7 +50,7 @@ static const char *const can_faults[] = {"none",    "drop",   "drop_commands", "
 static const mct_field scene_fields[] = {
     CHOICE("system", NULL, 0, system, "what is simulated; must be given"),
     CHOICE("stepper", NULL, MCT_STEPPER_RK4, stepper,
-           "how; left out: the most accurate that suits system and effects"),
+           "how; left out: the most accurate that suits system and effects, but no taylor"),
     REAL("dt", "s", 1e-7, 1, 0.001, dt, "the tick: one reading of the sensors, one command, one record"),
     INTEGER("substeps", "", 1, 1000, 1, substeps, "steps of the simulation within a tick"),
     REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
@@ -332,7 +332,8 @@ int32_t mct_best_stepper(const mct_scene *scene)
     int32_t best = -1;
     for (int32_t i = 0; i < MCT_STEPPER_COUNT; i++) {
         /* Of equal order the later one: it treats more of the motion exactly. */
-        if (mct_stepper_suits(scene, i) && (best < 0 || mct_steppers[i].order >= mct_steppers[best].order)) {
+        if (mct_stepper_suits(scene, i) && !mct_steppers[i].is_series &&
+            (best < 0 || mct_steppers[i].order >= mct_steppers[best].order)) {
             best = i;
         }
     }

@@ -37,7 +37,7 @@ const char *mct_choice_name(const mct_field *field, int32_t index);
 double mct_key_get(const mct_scene *scene, const mct_scene_key *key);
 void mct_key_set(mct_scene *scene, const mct_scene_key *key, double value);
 
-/* The most accurate stepper that suits a scene as it stands; MCT_STEPPER_RK4 when none does. */
+/* The most accurate stepper that suits a scene as it stands, but no series; MCT_STEPPER_RK4 when none does. */
 int32_t mct_best_stepper(const mct_scene *scene);
 
 /* Whether a stepper has a kernel for the scene and can follow its motor. */

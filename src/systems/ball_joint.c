@@ -115,8 +115,9 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
 }
 
 /* (418), and (419) with a turn. */
-MCT_INLINE void seed(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void seed(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
 {
+    (void)order;
     const mct_step *step = &k->rotor.step;
     mct_real turn[3];
     derivative(k, effects, x, 0, dx);
@@ -128,8 +129,9 @@ MCT_INLINE void seed(const constants_t *k, unsigned effects, const mct_real *x, 
 }
 
 /* The angular momentum by the couple, then the body turns under it. */
-MCT_INLINE void euler(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void euler(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
 {
+    (void)order;
     mct_real couple[3], w[3], e[4], carried[3];
     couple_at(k, effects, x + Q, couple);
     mct_rotor_push(&k->rotor, effects, couple, x + W, dx + W);
@@ -144,8 +146,9 @@ MCT_INLINE void euler(const constants_t *k, unsigned effects, const mct_real *x,
 }
 
 /* Half a turn, a kick at the middle, half a turn. */
-MCT_INLINE void leap(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void leap(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
 {
+    (void)order;
     mct_real couple[3], w[3], middle[4], end[4], second[4];
     mct_rotor_drift(x + Q, x + W, k->rotor.step.half, dx + Q, middle);
     couple_at(k, effects, middle, couple);
@@ -159,23 +162,45 @@ MCT_INLINE void leap(const constants_t *k, unsigned effects, const mct_real *x, 
     }
 }
 
-MCT_INLINE void rk4(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void rk4(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
 {
+    (void)order;
     mct_rk4_plain(derivative, k, k->rotor.step, effects, N, x, 0, dx);
 }
 
-typedef void (*step_in_body_axes)(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx);
+/* Weight in body axes turns back as the body turns. */
+MCT_INLINE void series(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
+{
+    mct_rotor_series y;
+    mct_vector_series gravity;
+    mct_rotor_series_start(&k->rotor, x + Q, x + W, &y);
+    if (effects & MCT_GRAVITY) {
+        mct_rotate_back(x + Q, k->gravity, gravity[0]);
+    }
+    for (int n = 0; n < order; n++) {
+        mct_real couple[3] = {0, 0, 0};
+        if (effects & MCT_GRAVITY) {
+            mct_cross(k->first_moment, gravity[n], couple);
+            mct_rotor_series_turn_back(&k->rotor, &y, n, gravity);
+        }
+        mct_rotor_series_next(&k->rotor, effects, couple, n, &y);
+    }
+    mct_rotor_series_sum(&y, order, dx + Q, dx + W);
+}
+
+typedef void (*step_in_body_axes)(const constants_t *k, unsigned effects, int order, const mct_real *x,
+                                  mct_real *dx);
 
 /* A step in body axes as one in space axes: r' w' - r w = r (dw + (E - 1) w'), r' = r E, w' = w + dw. */
-MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned effects, const mct_real *x,
-                         mct_real *dx)
+MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned effects, int order,
+                         const mct_real *x, mct_real *dx)
 {
     mct_real body[MCT_MAX_STATES], back[4], e[4], change[3];
     for (int i = 0; i < 4; i++) {
         body[Q + i] = x[Q + i];
     }
     mct_rotate_back(x + Q, x + W, body + W);
-    step(k, effects, body, dx);
+    step(k, effects, order, body, dx);
     mct_rotor_renormalise(x + Q, dx + Q);
     mct_quaternion_inverse(x + Q, back);
     mct_quaternion_multiply(back, dx + Q, e);
@@ -187,6 +212,13 @@ MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned 
         change[i] += dx[W + i];
     }
     mct_rotate(x + Q, change, dx + W);
+}
+
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    (void)u;
+    in_space(series, constants, effects, order, x, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -256,10 +288,11 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
 #define SWITCHES MCT_GRAVITY, MCT_VISCOUS
 static const uint32_t switches[] = {SWITCHES, 0};
 
-MCT_KERNELS_2(seed, k->rotor.step.remainder, N, SWITCHES, in_space(seed, k, effects, x, dx))
-MCT_KERNELS_2(euler, k->rotor.step.remainder, N, SWITCHES, in_space(euler, k, effects, x, dx))
-MCT_KERNELS_2(leap, k->rotor.step.remainder, N, SWITCHES, in_space(leap, k, effects, x, dx))
-MCT_KERNELS_2(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, in_space(rk4, k, effects, x, dx))
+MCT_KERNELS_2(seed, k->rotor.step.remainder, N, SWITCHES, in_space(seed, k, effects, 0, x, dx))
+MCT_KERNELS_2(euler, k->rotor.step.remainder, N, SWITCHES, in_space(euler, k, effects, 0, x, dx))
+MCT_KERNELS_2(leap, k->rotor.step.remainder, N, SWITCHES, in_space(leap, k, effects, 0, x, dx))
+MCT_KERNELS_2(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, in_space(rk4, k, effects, 0, x, dx))
+MCT_TAYLOR_KERNELS_2(k->rotor.step.remainder, N, 2, MCT_GRAVITY, MCT_VISCOUS)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -268,6 +301,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
         [MCT_STEPPER_RK4] = rk4_kernels,
+        MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

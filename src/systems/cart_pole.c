@@ -24,6 +24,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
+#include "../steppers/taylor.h"
 #include "kernels.h"
 #include "mctau/scene.h"
 #include "mctau/sincos.h"
@@ -284,6 +285,66 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     }
 }
 
+/*
+ * Of Lagrange's equations, by terms: with c w for cos th thd, the first one is (m1 + m2) pd + m2 l c w = integral of
+ * f - k1 pd, which spares the centrifugal term; c w and s w are the rates of sine and cosine, too.
+ */
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->step.h;
+    mct_series s, c, v, w, current, a; /* a: accelerations of the cart, times h */
+    mct_sincos(x[1], &s[0], &c[0]);
+    v[0] = x[2];
+    w[0] = x[3];
+    current[0] = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
+    mct_real cw = c[0] * w[0];
+    for (int n = 0; n < order; n++) {
+        const mct_real part = mct_series_share(n);
+        const mct_real share = h * part;
+        const mct_real input = n == 0 ? u : 0;
+        mct_real sw = 0;
+        mct_real ca = 0; /* as the next cw, but for c[0] times what is sought */
+        s[n + 1] = share * cw;
+        cw = 0;
+        for (int j = n; j > 0; j--) { /* what is known first, first */
+            sw += s[j] * w[n - j];
+            cw += c[j] * w[n + 1 - j];
+            ca += c[j] * a[n - j];
+        }
+        c[n + 1] = -share * (sw + s[0] * w[n]);
+        cw += c[n + 1] * w[0];
+        mct_real f1 =
+            mct_motor_force(&k->motor, effects, input, (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0);
+        mct_real f2 = 0;
+        if (effects & MCT_GRAVITY) {
+            f2 = k->weight_moment * s[n];
+        }
+        if (is_cart_damped(effects)) {
+            f1 -= k->cart_damping * v[n];
+        }
+        if (effects & MCT_VISCOUS) {
+            f2 -= k->pole_viscous * w[n];
+        }
+        mct_real change[2];
+        solve(k, MCT_GRAVITY, s[0], c[0], share * f1 - k->moment * cw, share * f2 - k->moment * (part * ca),
+              change);
+        v[n + 1] = change[0];
+        w[n + 1] = change[1];
+        a[n] = (mct_real)(n + 1) * change[0];
+        cw += c[0] * change[1];
+        if (effects & MCT_MOTOR_INDUCTIVE) {
+            current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[n], current[n]);
+        }
+    }
+    mct_series_increments(v, h, order, &dx[0], &dx[2]);
+    mct_series_increments(w, h, order, &dx[1], &dx[3]);
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        dx[4] = mct_series_sum(current, order);
+    }
+}
+
 static mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
 {
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
@@ -419,6 +480,7 @@ MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, ef
 MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
 MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
 MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 1, k, k->step, effects, 2, x, u, dx))
+MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -427,6 +489,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
         [MCT_STEPPER_RK4] = rk4_kernels,
+        MCT_TAYLOR_ROWS,
     };
     return mct_kernel_of(kernels, stepper, effects);
 }

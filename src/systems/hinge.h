@@ -14,6 +14,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
+#include "../steppers/taylor.h"
 #include "kernels.h"
 #include "mctau/hinge.h"
 #include "mctau/sincos.h"
@@ -102,6 +103,29 @@ MCT_INLINE void mct_hinge_kick_symmetric(const void *constants, unsigned effects
     mct_hinge_kick(constants, effects, x, u, MCT_R(0.5), dx);
 }
 
+/* Of kernels.h, without drag: w |w| has a kink where the body turns back. */
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const mct_hinge *k = constants;
+    const mct_real h = k->step.h;
+    mct_series s, c, w;
+    if (effects & MCT_GRAVITY) {
+        mct_sincos(x[0], &s[0], &c[0]);
+    }
+    w[0] = x[1];
+    for (int n = 0; n < order; n++) {
+        const mct_real torque = (effects & MCT_GRAVITY)
+                                    ? mct_hinge_torque(k, effects, s[n], c[n], w[n], n == 0 ? u : 0)
+                                    : mct_hinge_torque(k, effects, 0, 0, w[n], n == 0 ? u : 0);
+        if (effects & MCT_GRAVITY) {
+            mct_series_sincos(w, h, n, s, c);
+        }
+        w[n + 1] = h * mct_series_share(n) * (k->inverse_inertia * torque);
+    }
+    mct_series_increments(w, h, order, &dx[0], &dx[1]);
+}
+
 /* Of kernels.h. */
 MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
@@ -128,7 +152,8 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
     out->power_coulomb = dry * w;
 }
 
-/* The kernels, and kernel() of the descriptor: MCT_HINGE_KERNELS(MCT_KERNELS_3, its three switches). */
+/* The kernels, and kernel() of the descriptor: MCT_HINGE_KERNELS(MCT_KERNELS_3, its three switches), weight and viscous
+ * friction first. */
 #define MCT_HINGE_KERNELS(KERNELS, ...)                                                  \
     KERNELS(seed, k->hinge.step.remainder, 1, __VA_ARGS__,                               \
             mct_seed(mct_hinge_derivative, k, k->hinge.step, effects, 1, x, u, dx))      \
@@ -138,6 +163,7 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
             mct_leap(mct_hinge_kick_symmetric, k, k->hinge.step, effects, 1, x, u, dx))  \
     KERNELS(rk4, k->hinge.step.sixth_remainder, 1, __VA_ARGS__,                          \
             mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx)) \
+    MCT_TAYLOR_KERNELS_2(k->hinge.step.remainder, 1, 4, MCT_GRAVITY, MCT_VISCOUS)        \
     static mct_kernel kernel(int stepper, uint32_t effects)                              \
     {                                                                                    \
         static const uint32_t switches[] = {__VA_ARGS__, 0};                             \
@@ -146,6 +172,7 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
             [MCT_STEPPER_EULER] = euler_kernels,                                         \
             [MCT_STEPPER_LEAP] = leap_kernels,                                           \
             [MCT_STEPPER_RK4] = rk4_kernels,                                             \
+            MCT_TAYLOR_ROWS,                                                             \
         };                                                                               \
         return mct_switched_kernel_of(kernels, switches, stepper, effects);              \
     }

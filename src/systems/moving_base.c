@@ -23,7 +23,7 @@
  *               phasors would have to be renormalised.
  * Steppers      `euler` and `leap` feed the base as the change of its velocity over the step, exactly: a
  *               fast base (Kapitza) is not aliased, and leap's stability limit at 400 Hz and 1 ms is right
- *               to 6e-6. `seed` and `rk4` sample its acceleration: rk4 is the more accurate one while f h is
+ *               to 6e-6. `seed`, `rk4` and Taylor take its acceleration: rk4 is the more accurate one while f h is
  *               well below 1.
  */
 #include "mctau/moving_base.h"
@@ -32,6 +32,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
+#include "../steppers/taylor.h"
 #include "kernels.h"
 #include "mctau/scene.h"
 #include "mctau/sincos.h"
@@ -253,6 +254,42 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     kick(constants, effects, x, u, MCT_R(0.5), dx);
 }
 
+/* The base's acceleration swings: its derivatives are those of a cosine. */
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->step.h;
+    mct_series s, c, w, base[MCT_PHASES], across[MCT_PHASES]; /* across: a quarter of an oscillation behind */
+    if (effects & (MCT_GRAVITY | MCT_BASE_MOTION)) {
+        mct_sincos(x[0], &s[0], &c[0]);
+    }
+    for (int axis = 0; axis < MCT_PHASES && (effects & MCT_BASE_MOTION); axis++) {
+        mct_sincos(x[FIRST_PHASE + axis] + k->base[axis].phase, &across[axis][0], &base[axis][0]);
+        across[axis][0] *= -k->base[axis].peak;
+        base[axis][0] *= -k->base[axis].peak;
+    }
+    w[0] = x[1];
+    for (int n = 0; n < order; n++) {
+        const mct_real share = h * mct_series_share(n);
+        mct_real sum = torque(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, w[n], n == 0 ? u : 0);
+        if (effects & MCT_BASE_MOTION) {
+            sum -= k->moment * (mct_series_product(base[0], c, n) - mct_series_product(base[1], s, n));
+            for (int axis = 0; axis < MCT_PHASES; axis++) {
+                const mct_real turn = share * k->base[axis].frequency;
+                base[axis][n + 1] = -turn * across[axis][n];
+                across[axis][n + 1] = turn * base[axis][n];
+            }
+        }
+        if (effects & (MCT_GRAVITY | MCT_BASE_MOTION)) {
+            mct_series_sincos(w, h, n, s, c);
+        }
+        w[n + 1] = share * (k->inverse_inertia * sum);
+    }
+    mct_series_increments(w, h, order, &dx[0], &dx[1]);
+    turn_base(k, effects, dx);
+}
+
 #define friction mct_no_friction
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -323,6 +360,7 @@ MCT_KERNELS_3(leap, k->step.remainder, 1, SWITCHES,
               (mct_leap(kick_symmetric, k, k->step, effects, 1, x, u, dx), turn_base(k, effects, dx)))
 MCT_KERNELS_3(rk4, k->step.sixth_remainder, 1, SWITCHES,
               (mct_rk4(derivative_at, 0, k, k->step, effects, 1, x, u, dx), turn_base(k, effects, dx)))
+MCT_TAYLOR_KERNELS_3(k->step.remainder, 1, 3, SWITCHES)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -331,6 +369,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
         [MCT_STEPPER_RK4] = rk4_kernels,
+        MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

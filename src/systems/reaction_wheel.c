@@ -27,6 +27,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
+#include "../steppers/taylor.h"
 #include "kernels.h"
 #include "mctau/matrix.h"
 #include "mctau/scene.h"
@@ -306,6 +307,45 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     }
 }
 
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->step.h;
+    mct_series s, c, v[2], current;
+    s[0] = 0;
+    if (effects & MCT_GRAVITY) {
+        mct_sincos(x[0], &s[0], &c[0]);
+    }
+    v[0][0] = x[2];
+    v[1][0] = x[3];
+    current[0] = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
+    for (int n = 0; n < order; n++) {
+        const mct_real share = h * mct_series_share(n);
+        const mct_real input = n == 0 ? u : 0;
+        const mct_real rates[2] = {v[0][n], v[1][n]};
+        mct_real tau[2];
+        torques(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, rates,
+                mct_motor_force(&k->motor, effects, input, (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0),
+                tau);
+        const mct_real arm = (tau[0] - tau[1]) * k->inverse_arm;
+        if (effects & MCT_GRAVITY) {
+            mct_series_sincos(v[0], h, n, s, c);
+        }
+        v[0][n + 1] = share * arm;
+        v[1][n + 1] = share * (tau[1] * k->inverse_wheel - arm);
+        if (effects & MCT_MOTOR_INDUCTIVE) {
+            current[n + 1] = share * mct_motor_current_rate(&k->motor, input, rates[1], current[n]);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        mct_series_increments(v[i], h, order, &dx[i], &dx[2 + i]);
+    }
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        dx[4] = mct_series_sum(current, order);
+    }
+}
+
 /* The one nonlinearity, for `expo`. */
 MCT_INLINE mct_real weight(const void *constants, mct_real angle)
 {
@@ -435,6 +475,7 @@ MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, ef
 MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
 MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
 MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 0, k, k->step, effects, 2, x, u, dx))
+MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 MCT_STEPPER_KERNELS(expo, 0, mct_expo_increments(weight, k, &k->expo, effects, 2, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
@@ -442,7 +483,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
     static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
-        [MCT_STEPPER_EXPO] = expo_kernels,
+        [MCT_STEPPER_EXPO] = expo_kernels, MCT_TAYLOR_ROWS,
     };
     return mct_kernel_of(kernels, stepper, effects);
 }

@@ -440,6 +440,58 @@ MCT_INLINE void rk4(const constants_t *k, unsigned effects, const mct_real *x, m
     mct_rotor_renormalise(x + Q, dx + Q);
 }
 
+/*
+ * The axes of space, seen from the body, turn back as it turns; forces and couples are linear in them. No drag: |v| v has
+ * a kink where the body stops.
+ */
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->rotor.step.h;
+    mct_rotor_series y;
+    mct_vector_series axes[3];
+    mct_series v[3];
+    (void)u;
+    mct_rotor_series_start(&k->rotor, x + Q, x + W, &y);
+    for (int axis = 0; axis < 3; axis++) {
+        const mct_real unit[3] = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
+        v[axis][0] = x[V + axis];
+        if (effects & MCT_FORCES) {
+            mct_rotate_back(x + Q, unit, axes[axis][0]);
+        }
+    }
+    for (int n = 0; n < order; n++) {
+        const mct_real share = h * mct_series_share(n);
+        mct_real couple[3] = {0, 0, 0};
+        for (int axis = 0; axis < 3; axis++) {
+            mct_real a = (effects & MCT_GRAVITY) && n == 0 ? k->gravity[axis] : 0;
+            if (effects & MCT_FORCES) {
+                const mct_real lever[3] = {k->space_lever[0][axis], k->space_lever[1][axis],
+                                           k->space_lever[2][axis]};
+                const mct_real constant[2] = {n == 0 ? k->space_force[axis] : 0,
+                                              n == 0 ? k->body_couple[axis] : 0};
+                mct_real part[3];
+                mct_cross(lever, axes[axis][n], part);
+                couple[axis] += constant[1];
+                MCT_UNROLL
+                for (int i = 0; i < 3; i++) {
+                    couple[i] += part[i];
+                }
+                a += k->inverse_mass * (constant[0] + mct_dot(axes[axis][n], k->body_force));
+                mct_rotor_series_turn_back(&k->rotor, &y, n, axes[axis]);
+            }
+            v[axis][n + 1] = share * a;
+        }
+        mct_rotor_series_next(&k->rotor, effects, couple, n, &y);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        mct_series_increments(v[axis], h, order, &dx[axis], &dx[V + axis]);
+    }
+    mct_rotor_series_sum(&y, order, dx + Q, dx + W);
+    mct_rotor_renormalise(x + Q, dx + Q);
+}
+
 /* --- all that the equation says --- */
 
 static void evaluate_particles(const constants_t *k, const mct_real *x, mct_evaluation *out)
@@ -520,6 +572,7 @@ MCT_KERNELS_3(seed, k->rotor.step.remainder, N, SWITCHES, seed(k, effects, x, dx
 MCT_KERNELS_3(euler, k->rotor.step.remainder, N, SWITCHES, euler(k, effects, x, dx))
 MCT_KERNELS_3(leap, k->rotor.step.remainder, N, SWITCHES, leap(k, effects, x, dx))
 MCT_KERNELS_3(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, rk4(k, effects, x, u, dx))
+MCT_TAYLOR_KERNELS_2(k->rotor.step.remainder, N, 3, MCT_GRAVITY, MCT_FORCES)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -528,6 +581,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
         [MCT_STEPPER_RK4] = rk4_kernels,
+        MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

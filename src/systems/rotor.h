@@ -15,6 +15,7 @@
 #ifndef MCT_SYSTEMS_ROTOR_H
 #define MCT_SYSTEMS_ROTOR_H
 
+#include "../steppers/taylor.h"
 #include "mctau/hyperdual.h"
 #include "mctau/inertia.h"
 #include "mctau/rotation.h"
@@ -232,6 +233,122 @@ MCT_INLINE void mct_rotor_carry(const mct_rotor *k, const mct_real *w, mct_real 
     const mct_real back[4] = {e[0], -e[1], -e[2], -e[3]};
     mct_turn_change(back, momentum, change);
     mct_apply(k->inverse, change, dw);
+}
+
+/* --- series --- */
+
+/* Terms of a vector. Not const where it is read: C99 takes no array of arrays for one of const. */
+typedef mct_real mct_vector_series[MCT_TAYLOR_TERMS][3];
+
+/* Of attitude, angular velocity and angular momentum in body axes. */
+typedef struct {
+    mct_real q[MCT_TAYLOR_TERMS][4];
+    mct_vector_series w, momentum;
+} mct_rotor_series;
+
+MCT_INLINE void mct_rotor_series_start(const mct_rotor *k, const mct_real *q, const mct_real *w,
+                                       mct_rotor_series *y)
+{
+    MCT_UNROLL
+    for (int i = 0; i < 4; i++) {
+        y->q[0][i] = q[i];
+    }
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        y->w[0][i] = w[i];
+    }
+    mct_apply(k->inertia, w, y->momentum[0]);
+}
+
+/* Term n of a x b. */
+MCT_INLINE void mct_series_cross(mct_vector_series a, mct_vector_series b, int n, mct_real *product)
+{
+    mct_real sum[3] = {0, 0, 0};
+    for (int j = 0; j <= n; j++) {
+        mct_real term[3];
+        mct_cross(a[j], b[n - j], term);
+        MCT_UNROLL
+        for (int i = 0; i < 3; i++) {
+            sum[i] += term[i];
+        }
+    }
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        product[i] = sum[i];
+    }
+}
+
+/* Term n + 1 of r'y, a vector y of space in body axes: its rate is (r'y) x w. */
+MCT_INLINE void mct_rotor_series_turn_back(const mct_rotor *k, mct_rotor_series *y, int n,
+                                           mct_vector_series vector)
+{
+    const mct_real share = k->step.h * mct_series_share(n);
+    mct_real rate[3];
+    mct_series_cross(vector, y->w, n, rate);
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        vector[n + 1][i] = share * rate[i];
+    }
+}
+
+/* Term n + 1 of all, under term n of the couple: as mct_rotor_accelerate() and mct_quaternion_rate_body(). */
+MCT_INLINE void mct_rotor_series_next(const mct_rotor *k, unsigned effects, const mct_real *couple, int n,
+                                      mct_rotor_series *y)
+{
+    const mct_real share = k->step.h * mct_series_share(n);
+    const mct_real *const now = y->w[n];
+    mct_real sum[3], turn[4] = {0, 0, 0, 0};
+    mct_series_cross(y->momentum, y->w, n, sum);
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        sum[i] += couple[i];
+        if (effects & MCT_VISCOUS) {
+            sum[i] -= k->viscous * (now[i] - mct_dot(k->idle_axis, now) * k->idle_axis[i]);
+        }
+    }
+    mct_apply(k->inverse, sum, y->w[n + 1]);
+    for (int j = 0; j <= n; j++) { /* of 2 qd = q (0, w) */
+        const mct_real *const q = y->q[n - j];
+        const mct_real *const w = y->w[j];
+        mct_real across[3];
+        mct_cross(q + 1, w, across);
+        turn[0] -= mct_dot(q + 1, w);
+        MCT_UNROLL
+        for (int i = 0; i < 3; i++) {
+            turn[1 + i] += q[0] * w[i] + across[i];
+        }
+    }
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        y->w[n + 1][i] *= share;
+    }
+    mct_apply(k->inertia, y->w[n + 1], y->momentum[n + 1]);
+    MCT_UNROLL
+    for (int i = 0; i < 4; i++) {
+        y->q[n + 1][i] = MCT_R(0.5) * share * turn[i];
+    }
+}
+
+MCT_INLINE void mct_rotor_series_sum(mct_rotor_series *y, int order, mct_real *dq, mct_real *dw)
+{
+    MCT_UNROLL
+    for (int i = 0; i < 4; i++) {
+        dq[i] = y->q[order][i];
+    }
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        dw[i] = y->w[order][i];
+    }
+    for (int n = order - 1; n > 0; n--) { /* the smallest first */
+        MCT_UNROLL
+        for (int i = 0; i < 4; i++) {
+            dq[i] += y->q[n][i];
+        }
+        MCT_UNROLL
+        for (int i = 0; i < 3; i++) {
+            dw[i] += y->w[n][i];
+        }
+    }
 }
 
 #endif

@@ -26,6 +26,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
+#include "../steppers/taylor.h"
 #include "kernels.h"
 #include "mctau/arctan.h"
 #include "mctau/matrix.h"
@@ -239,6 +240,93 @@ MCT_INLINE void kick_symmetric(const void *self, unsigned effects, const mct_rea
     kick(self, effects, y, u, MCT_R(0.5), dy);
 }
 
+/* Term n + 1 of p = 1/R from R^2 = q: 2 q p' = - q' p. */
+MCT_INLINE mct_real next_inverse(const mct_real *square, const mct_real *inverse, mct_real by_square, int n)
+{
+    mct_real sum = 0;
+    mct_real weight = MCT_R(-0.5) * (mct_real)(n + 1);
+    for (int j = n + 1; j > 0; j--) {
+        sum += weight * (square[j] * inverse[n + 1 - j]);
+        weight -= MCT_R(0.5);
+    }
+    return by_square * mct_series_share(n) * sum;
+}
+
+/*
+ * Increments dy of y. By terms, Xdd = g' + pull X + turning (-Y, X) with
+ *     pull = - k/m + k l0/(m R) - k1/m X.Xd / R^2,    turning = (torque - k2 w) / (m R^2),    w = X x Xd / R^2.
+ */
+MCT_INLINE void taylor_in_frame(const frame *now, unsigned effects, int order, const mct_real *y, mct_real u,
+                                mct_real *dy)
+{
+    const constants_t *k = now->k;
+    const mct_real h = k->step.h;
+    const mct_real by_square = 1 / square_of(y);
+    const bool has_rest = (effects & MCT_SPRING) && k->rest_rate > 0;
+    const bool is_turned = (effects & MCT_VISCOUS) || u != 0;
+    const bool has_inverse = has_rest || is_turned;
+    /* 1/R is singular at a complex time R/|Xd| from here: a step that comes half as far is rk4's. */
+    if (has_inverse && 4 * h * h * (y[2] * y[2] + y[3] * y[3]) * by_square > 1) {
+        mct_rk4_plain(derivative, now, k->step, effects, 2, y, u, dy);
+        return;
+    }
+    mct_series X, Y, Xd, Yd, square, along, inverse, inverse_square, across, rate, pull, turning;
+    X[0] = y[0];
+    Y[0] = y[1];
+    Xd[0] = y[2];
+    Yd[0] = y[3];
+    square[0] = square_of(y);
+    inverse[0] = mct_inverse_root(square[0]);
+    for (int n = 0; n < order; n++) {
+        const mct_real share = h * mct_series_share(n);
+        mct_real a[2] = {0, 0};
+        if ((effects & MCT_GRAVITY) && n == 0) {
+            a[0] = now->along;
+            a[1] = now->across;
+        }
+        mct_real part[4];
+        if (has_inverse) {
+            mct_series_products(X, Xd, Yd, n, &part[0], &part[1]);
+            mct_series_products(Y, Xd, Yd, n, &part[2], &part[3]);
+            along[n] = part[0] + part[3];
+            across[n] = part[1] - part[2];
+        }
+        pull[n] = (effects & MCT_SPRING) && n == 0 ? -k->stiffness_rate : 0;
+        if (has_rest) {
+            pull[n] += k->rest_rate * inverse[n];
+        }
+        if (is_turned) {
+            inverse_square[n] = mct_series_product(inverse, inverse, n);
+            turning[n] = k->inverse_mass * u * inverse_square[n];
+        }
+        if (effects & MCT_VISCOUS) {
+            mct_series_products(inverse_square, along, across, n, &part[0], &rate[n]);
+            pull[n] -= k->length_damping * part[0];
+            turning[n] -= k->angle_damping * mct_series_product(inverse_square, rate, n);
+        }
+        if (effects & (MCT_SPRING | MCT_VISCOUS)) {
+            mct_series_products(pull, X, Y, n, &part[0], &part[1]);
+            a[0] += part[0];
+            a[1] += part[1];
+        }
+        if (is_turned) {
+            mct_series_products(turning, X, Y, n, &part[0], &part[1]);
+            a[0] -= part[1];
+            a[1] += part[0];
+        }
+        X[n + 1] = share * Xd[n];
+        Y[n + 1] = share * Yd[n];
+        Xd[n + 1] = share * a[0];
+        Yd[n + 1] = share * a[1];
+        if (has_inverse) {
+            square[n + 1] = 2 * share * along[n];
+            inverse[n + 1] = next_inverse(square, inverse, by_square, n);
+        }
+    }
+    mct_series_increments(Xd, h, order, &dy[0], &dy[2]);
+    mct_series_increments(Yd, h, order, &dy[1], &dy[3]);
+}
+
 /* A step that has no result: the plant keeps its state and counts it. */
 MCT_INLINE void fail(mct_real *dx)
 {
@@ -328,19 +416,22 @@ MCT_INLINE void polar_seed(const constants_t *k, unsigned effects, const mct_rea
 }
 
 /* A step in the frame of the rod, by one of the steppers: `step` from `y` to the increments `dy`. */
-#define STEP_IN_FRAME(name, step)                                                               \
-    MCT_INLINE void name(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, \
-                         mct_real *dx)                                                          \
-    {                                                                                           \
-        const frame now = frame_at(k, effects, x[1]);                                           \
-        const mct_real y[4] = {x[0], 0, x[2], x[0] * x[3]};                                     \
-        mct_real dy[4];                                                                         \
-        step;                                                                                   \
-        to_polar(k, effects, x, u, dy, dx);                                                     \
+#define STEP_IN_FRAME(name, step)                                                                           \
+    MCT_INLINE void name(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u, \
+                         mct_real *dx)                                                                      \
+    {                                                                                                       \
+        const constants_t *k = constants;                                                                   \
+        const frame now = frame_at(k, effects, x[1]);                                                       \
+        const mct_real y[4] = {x[0], 0, x[2], x[0] * x[3]};                                                 \
+        mct_real dy[4];                                                                                     \
+        step;                                                                                               \
+        (void)order;                                                                                        \
+        to_polar(k, effects, x, u, dy, dx);                                                                 \
     }
 STEP_IN_FRAME(framed_euler, mct_euler(kick_implicit, &now, k->step, effects, 2, y, u, dy))
 STEP_IN_FRAME(framed_leap, mct_leap(kick_symmetric, &now, k->step, effects, 2, y, u, dy))
 STEP_IN_FRAME(framed_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
+STEP_IN_FRAME(taylor, taylor_in_frame(&now, effects, order, y, u, dy))
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
                      mct_evaluation *out)
@@ -398,9 +489,10 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
 static const uint32_t switches[] = {SWITCHES, 0};
 
 MCT_KERNELS_3(seed, k->step.remainder, 2, SWITCHES, polar_seed(k, effects, x, u, dx))
-MCT_KERNELS_3(euler, k->step.remainder, 2, SWITCHES, framed_euler(k, effects, x, u, dx))
-MCT_KERNELS_3(leap, k->step.remainder, 2, SWITCHES, framed_leap(k, effects, x, u, dx))
-MCT_KERNELS_3(rk4, k->step.sixth_remainder, 2, SWITCHES, framed_rk4(k, effects, x, u, dx))
+MCT_KERNELS_3(euler, k->step.remainder, 2, SWITCHES, framed_euler(k, effects, 0, x, u, dx))
+MCT_KERNELS_3(leap, k->step.remainder, 2, SWITCHES, framed_leap(k, effects, 0, x, u, dx))
+MCT_KERNELS_3(rk4, k->step.sixth_remainder, 2, SWITCHES, framed_rk4(k, effects, 0, x, u, dx))
+MCT_TAYLOR_KERNELS_3(k->step.remainder, 2, 3, SWITCHES)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -409,6 +501,7 @@ static mct_kernel kernel(int stepper, uint32_t effects)
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
         [MCT_STEPPER_RK4] = rk4_kernels,
+        MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

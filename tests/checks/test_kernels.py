@@ -87,6 +87,17 @@ def test_a_motor_more_never_makes_a_kernel_smaller(build, library, system, stepp
             assert size == sorted(size), f"{tag}, others {others}: {size}"
 
 
+def test_an_effect_more_never_makes_a_series_smaller(build, library):
+    for tag in tags(build):
+        functions = library("cart_pole", tag)
+        size = [[kernels.arithmetic(functions[f"taylor_{motor}_{others}"]) for others in range(4)]
+                for motor in MOTORS.values()]
+        for each in size:
+            assert each[0] <= min(each[1], each[2]) and max(each[1], each[2]) <= each[3], f"{tag}: {size}"
+        for others in range(4):
+            assert size[0][others] <= size[1][others] <= size[2][others], f"{tag}: {size}"
+
+
 @pytest.mark.parametrize("system, stepper", CASES)
 def test_a_kernel_without_effects_equals_one_written_without_effects(build, library, plain, system, stepper):
     for tag in tags(build):

@@ -2,8 +2,8 @@
  * Prints one 64-bit hash per case over all the bits that the case computes, so that builds can be compared
  * line by line. usage: bits SCENE...
  *
- * Cases: sine and cosine; every stepper x system with a motor x motor (all eight sets of gravity, viscous and coulomb in
- * one hash), the state of every tick under an input that jumps; M, C, tau and all that follows from them; the
+ * Cases: sine and cosine; every stepper x system with a motor x motor (all eight sets of gravity, viscous and coulomb that
+ * it suits in one hash), the state of every tick under an input that jumps; M, C, tau and all that follows from them; the
  * closed loop of each scene given, as it is and with noise, latency and a plant that differs, all that a tick
  * records.
  */
@@ -179,6 +179,7 @@ static double full_input(const mct_scene *scene)
 static void print_kernels(int system, int stepper, const char *motor, uint32_t motor_effect)
 {
     uint64_t hash = 0;
+    int suited = 0;
     char name[64];
     snprintf(name, sizeof name, "%s %s %s", mct_systems[system]->name, mct_steppers[stepper].name, motor);
     for (uint32_t others = 0; others < MCT_MOTOR_QUASI_STATIC; others++) {
@@ -188,8 +189,9 @@ static void print_kernels(int system, int stepper, const char *motor, uint32_t m
         const double amplitude = full_input(&scene);
         const mct_status status = mct_plant_init(&plant, &scene, NULL);
         if (status == MCT_ERROR_UNSUITED) {
-            return;
+            continue;
         }
+        suited++;
         if (status != MCT_OK) {
             fail(name, "not accepted");
         }
@@ -201,7 +203,9 @@ static void print_kernels(int system, int stepper, const char *motor, uint32_t m
             fail(name, "diverged, so its hash would say little");
         }
     }
-    printf("%s kernels %s %016llx\n", precision, name, (unsigned long long)hash);
+    if (suited > 0) {
+        printf("%s kernels %s %016llx\n", precision, name, (unsigned long long)hash);
+    }
 }
 
 static void print_evaluations(int system, const char *motor, uint32_t motor_effect)

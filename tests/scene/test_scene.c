@@ -251,7 +251,7 @@ static void test_an_override_is_called_by_its_origin(void)
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_UNSUITED, read_with(CART, "scene.dt=0.001", "scene.stepper=expo"));
     TEST_ASSERT_EQUAL_STRING(
         "--stepper: scene.stepper: found expo, which does not suit cart_pole with gravity, viscous, "
-        "motor = quasi_static; allowed seed, euler, leap, rk4",
+        "motor = quasi_static; allowed seed, euler, leap, rk4, taylor4, taylor6, taylor8, taylor12",
         why.text);
 }
 
@@ -346,7 +346,7 @@ static void test_unknown_names_are_refused_with_those_that_are_known(void)
         with_systems("x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed "));
     assert_refused(MCT_ERROR_RANGE, CART "stepper = 'rk5'",
                    "x.toml:3: scene.stepper: found 'rk5'; did you mean 'rk4'? allowed seed, euler, leap, "
-                   "rk4, expo, discrete");
+                   "rk4, taylor4, taylor6, taylor8, taylor12, expo, discrete");
     assert_refused(MCT_ERROR_RANGE, CART "[effects]\nmotor = 'stepper'",
                    "x.toml:4: effects.motor: found 'stepper'; allowed off, quasi_static, inductive");
 }
@@ -391,7 +391,7 @@ static void test_a_stepper_that_does_not_suit_names_those_that_do(void)
     assert_refused(
         MCT_ERROR_UNSUITED, CART "stepper = 'expo'",
         "x.toml:3: scene.stepper: found expo, which does not suit cart_pole with gravity, viscous, "
-        "motor = quasi_static; allowed seed, euler, leap, rk4");
+        "motor = quasi_static; allowed seed, euler, leap, rk4, taylor4, taylor6, taylor8, taylor12");
 }
 
 static void test_a_stepper_too_coarse_for_the_motor_names_what_would_do(void)

@@ -13,13 +13,12 @@
 
 #include "mctau/expo.h"
 #include "mctau/scene.h"
+#include "support/quad.h"
 
 #if defined __SIZEOF_FLOAT128__ && !defined __clang__
 #define HAVE_REFERENCE 1
-typedef __float128 quad;
 #else
 #define HAVE_REFERENCE 0 /* no quadruple precision with this compiler: the tests say so and are skipped */
-typedef long double quad;
 #endif
 
 enum { REFERENCE_STATES = MCT_EXPO_STATES, REFERENCE_NODES = 8, REFERENCE_WINDOWS = 24 };

@@ -270,6 +270,9 @@ static void test_each_stepper_has_its_order_with_all_effects(void)
     textbook_body body;
     (void)lumps_reference(1, &body, start, end);
     FOR_EACH_STEPPER (stepper, ball_joint, MCT_GRAVITY | MCT_VISCOUS) {
+        if (mct_steppers[stepper].is_series) {
+            continue; /* at rounding by 2 ms: tests/steppers/test_order_f64.c */
+        }
         const double coarse = lumps_error(stepper, 4e-3, 1, end, start);
         const double order = log2(coarse / lumps_error(stepper, 2e-3, 1, end, start));
         printf("%s: order %.2f\n", mct_steppers[stepper].name, order);

@@ -261,6 +261,9 @@ static void test_each_stepper_has_its_order(void)
         quad end[2];
         follow_textbook(&motions[i], end);
         FOR_EACH_STEPPER (stepper, scene_of_motion(&motions[i], 0).system, MCT_GRAVITY | MCT_VISCOUS) {
+            if (mct_steppers[stepper].is_series) {
+                continue; /* at rounding by 2 ms: tests/steppers/test_order_f64.c */
+            }
             const double order =
                 log2(error_of(&motions[i], stepper, 4e-3, end) / error_of(&motions[i], stepper, 2e-3, end));
             printf("%s, %s: order %.2f\n", motions[i].name, mct_steppers[stepper].name, order);

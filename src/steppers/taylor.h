@@ -1,0 +1,106 @@
+/*
+ * Taylor's method: the derivatives of the motion up to an order, by recurrences, with one sine and cosine a step.
+ *
+ * Term n of a series is its quantity's nth derivative times h^n/n!, so that an increment is the sum of all terms but
+ * the first. A system writes the series of its rates, term by term, with the functions below; a coordinate, which is a
+ * derivative ahead of its rate, gets one term more. The first order, with that term, is the source's scheme (`seed`).
+ *
+ * The order is an argument and loops stay loops: one kernel serves all orders (src/systems/kernels.h), and unrolled ones
+ * take many times as long to compile and are no faster.
+ * Source: the recurrences are Steffensen's; Hairer, Norsett, Wanner, Solving ODEs I, I.8.
+ */
+#ifndef MCT_STEPPERS_TAYLOR_H
+#define MCT_STEPPERS_TAYLOR_H
+
+#include "mctau/real.h"
+
+#define MCT_TAYLOR_TERMS 13 /* of order 12 */
+
+typedef mct_real mct_series[MCT_TAYLOR_TERMS];
+
+/* 1 / (n + 1): times h, it takes term n of a rate to term n + 1 of what has that rate. */
+MCT_INLINE mct_real mct_series_share(int n)
+{
+    static const mct_real shares[MCT_TAYLOR_TERMS] = {
+        1,
+        MCT_R(1.0 / 2),
+        MCT_R(1.0 / 3),
+        MCT_R(1.0 / 4),
+        MCT_R(1.0 / 5),
+        MCT_R(1.0 / 6),
+        MCT_R(1.0 / 7),
+        MCT_R(1.0 / 8),
+        MCT_R(1.0 / 9),
+        MCT_R(1.0 / 10),
+        MCT_R(1.0 / 11),
+        MCT_R(1.0 / 12),
+        MCT_R(1.0 / 13),
+    };
+    return shares[n];
+}
+
+/* Term n of a b. In all of these what is known first comes first, so that no sum waits for the latest term. */
+MCT_INLINE mct_real mct_series_product(const mct_real *a, const mct_real *b, int n)
+{
+    mct_real sum = 0;
+    for (int j = n - 1; j > 0; j--) {
+        sum += a[j] * b[n - j];
+    }
+    if (n > 0) {
+        sum += a[n] * b[0];
+    }
+    return sum + a[0] * b[n];
+}
+
+/* Terms n of a b and a c. */
+MCT_INLINE void mct_series_products(const mct_real *a, const mct_real *b, const mct_real *c, int n,
+                                    mct_real *ab, mct_real *ac)
+{
+    mct_real first = 0, second = 0;
+    for (int j = n - 1; j > 0; j--) {
+        first += a[j] * b[n - j];
+        second += a[j] * c[n - j];
+    }
+    if (n > 0) {
+        first += a[n] * b[0];
+        second += a[n] * c[0];
+    }
+    *ab = first + a[0] * b[n];
+    *ac = second + a[0] * c[n];
+}
+
+/* Term n + 1 of sine and cosine of an angle, from their terms and those of its rate up to n. */
+MCT_INLINE void mct_series_sincos(const mct_real *rate, mct_real h, int n, mct_real *s, mct_real *c)
+{
+    const mct_real share = h * mct_series_share(n);
+    mct_real up, down;
+    mct_series_products(rate, c, s, n, &up, &down);
+    s[n + 1] = share * up;
+    c[n + 1] = -share * down;
+}
+
+/* Increment of what has the series; the smallest terms first. */
+MCT_INLINE mct_real mct_series_sum(const mct_real *series, int order)
+{
+    mct_real sum = series[order];
+    for (int n = order - 1; n > 0; n--) {
+        sum += series[n];
+    }
+    return sum;
+}
+
+/* Increments of a coordinate and of its rate, which has the series. */
+MCT_INLINE void mct_series_increments(const mct_real *rate, mct_real h, int order, mct_real *coordinate,
+                                      mct_real *of_rate)
+{
+    mct_real way = mct_series_share(order) * rate[order];
+    mct_real sum = rate[order];
+    for (int n = order - 1; n > 0; n--) {
+        way += mct_series_share(n) * rate[n];
+        sum += rate[n];
+    }
+    *coordinate = h * (way + rate[0]);
+    *of_rate = sum;
+}
+
+#endif
