@@ -73,4 +73,5 @@ foreach(target mctau_command mctau_runner_f64 mctau_runner_f32)
     endif()
 endforeach()
 target_link_libraries(mctau_command PRIVATE ${CSV_LIBRARY} ${MCTAU_MATH_LIBRARY})
+target_compile_definitions(mctau_command PRIVATE MCT_SOURCE="${PROJECT_SOURCE_DIR}") # where what draws is found
 set_target_properties(mctau_command PROPERTIES OUTPUT_NAME mctau)

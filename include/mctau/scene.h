@@ -49,11 +49,13 @@ typedef struct mct_scene {
     /* [scene] */
     int32_t system;    /**< index into mct_systems */
     int32_t stepper;   /**< index into mct_steppers */
+    int32_t automatic; /**< 1: stepper = "auto"; the most accurate one stands in until a host has chosen */
     int32_t precision; /**< MCT_PRECISION_... */
     int32_t substeps;
     int32_t realtime;
-    double dt;       /**< the tick [s] */
-    double duration; /**< [s] */
+    double dt;        /**< the tick [s] */
+    double duration;  /**< [s] */
+    double tolerance; /**< of a host that chooses the stepper */
     char hal[MCT_MAX_TEXT];
     /* [parameters], [effects], [initial]: by the system's descriptor */
     double parameters[MCT_MAX_PARAMETERS];
@@ -126,7 +128,8 @@ typedef struct {
  *
  * The choices of scene.system and scene.stepper are the names in mct_systems and mct_steppers; `choices` of
  * these two fields is NULL. Texts are empty by default but for scene.hal, "sim"; lists are empty. A scene
- * must name its system; the stepper it leaves out is the most accurate one that suits, but no series.
+ * must name its system; the stepper it leaves out, or calls "auto", is the most accurate one that suits, but no
+ * series.
  */
 extern const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT];
 

@@ -307,6 +307,13 @@ static double round_down(double value)
 static mct_status examine_stepper(const mct_scene *scene, const mct_system *system, mct_blame *blame,
                                   mct_message *sentence)
 {
+    if (scene->stepper == MCT_STEPPER_COUNT) {
+        blame->table = "scene";
+        blame->key = "stepper";
+        mct_message_add(sentence,
+                        "found auto, which is only of a scene's text; allowed the index of a stepper");
+        return MCT_ERROR_RANGE;
+    }
     if (mct_stepper_suits(scene, scene->stepper)) {
         return MCT_OK;
     }

@@ -4,6 +4,7 @@
 
 #include "check.h"
 #include "mctau/mix.h"
+#include "mctau/stepper.h"
 #include "tables.h"
 #include "text.h"
 #include "toml.h"
@@ -747,7 +748,8 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
     status = status != MCT_OK ? status : set_all(&self);
     if (status == MCT_OK) {
         mct_toml_entry storage;
-        if (find_given(&self, "scene", "stepper", &storage).entry == NULL) {
+        self.scene.automatic = self.scene.stepper == MCT_STEPPER_COUNT;
+        if (self.scene.automatic || find_given(&self, "scene", "stepper", &storage).entry == NULL) {
             self.scene.stepper = mct_best_stepper(&self.scene);
         }
         status = refuse_idle_keys(&self);

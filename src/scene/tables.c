@@ -50,7 +50,10 @@ static const char *const can_faults[] = {"none",    "drop",   "drop_commands", "
 static const mct_field scene_fields[] = {
     CHOICE("system", NULL, 0, system, "what is simulated; must be given"),
     CHOICE("stepper", NULL, MCT_STEPPER_RK4, stepper,
-           "how; left out: the most accurate that suits system and effects, but no taylor"),
+           "how; left out: the most accurate that suits system and effects, but no taylor; auto: the command takes the "
+           "cheapest that meets the tolerance, and its substeps"),
+    REAL("tolerance", "", 1e-15, 1e6, 1e-6, tolerance,
+         "of stepper = auto: largest error at any tick, relative to a state's largest value or to 1"),
     REAL("dt", "s", 1e-7, 1, 0.001, dt, "the tick: one reading of the sensors, one command, one record"),
     INTEGER("substeps", "", 1, 1000, 1, substeps, "steps of the simulation within a tick"),
     REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
@@ -266,7 +269,9 @@ const char *mct_choice_name(const mct_field *field, int32_t index)
         if (field->offset == PLACE(system)) {
             return index < MCT_SYSTEM_COUNT ? mct_systems[index]->name : NULL;
         }
-        return index < MCT_STEPPER_COUNT ? mct_steppers[index].name : NULL;
+        return index < MCT_STEPPER_COUNT    ? mct_steppers[index].name
+               : index == MCT_STEPPER_COUNT ? "auto"
+                                            : NULL;
     }
     for (int32_t i = 0; i < index; i++) {
         if (field->choices[i] == NULL) {

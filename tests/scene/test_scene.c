@@ -184,6 +184,20 @@ static void test_a_stepper_left_out_is_the_most_accurate_that_suits(void)
     TEST_ASSERT_EQUAL_INT(MCT_STEPPER_EXPO, scene.stepper);
 }
 
+static void test_auto_stands_for_the_most_accurate_until_a_host_chooses(void)
+{
+    assert_read(CART "stepper = 'auto'\ntolerance = 1e-8");
+    TEST_ASSERT_EQUAL_INT(1, scene.automatic);
+    TEST_ASSERT_EQUAL_INT(MCT_STEPPER_RK4, scene.stepper);
+    TEST_ASSERT_EQUAL_DOUBLE(1e-8, scene.tolerance);
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_scene_check(&scene, &why));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, read_with(CART "stepper = 'auto'", "scene.stepper=leap", NULL));
+    TEST_ASSERT_EQUAL_INT(0, scene.automatic);
+    TEST_ASSERT_EQUAL_INT(MCT_STEPPER_LEAP, scene.stepper);
+    scene.stepper = MCT_STEPPER_COUNT; /* what stands for auto within the reader is no stepper */
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_check(&scene, &why));
+}
+
 static void test_ready_scenes_are_read(void)
 {
     static const char *const names[] = {"reaction_wheel", "cart_pole", "reaction_wheel_free",
@@ -346,7 +360,7 @@ static void test_unknown_names_are_refused_with_those_that_are_known(void)
         with_systems("x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed "));
     assert_refused(MCT_ERROR_RANGE, CART "stepper = 'rk5'",
                    "x.toml:3: scene.stepper: found 'rk5'; did you mean 'rk4'? allowed seed, euler, leap, "
-                   "rk4, taylor4, taylor6, taylor8, taylor12, expo, discrete");
+                   "rk4, taylor4, taylor6, taylor8, taylor12, expo, discrete, auto");
     assert_refused(MCT_ERROR_RANGE, CART "[effects]\nmotor = 'stepper'",
                    "x.toml:4: effects.motor: found 'stepper'; allowed off, quasi_static, inductive");
 }
@@ -619,6 +633,7 @@ int main(void)
     RUN_TEST(test_every_key_can_be_given_its_smallest_and_its_largest_value_and_no_more);
     RUN_TEST(test_every_kind_of_value_goes_where_it_belongs);
     RUN_TEST(test_a_stepper_left_out_is_the_most_accurate_that_suits);
+    RUN_TEST(test_auto_stands_for_the_most_accurate_until_a_host_chooses);
     RUN_TEST(test_ready_scenes_are_read);
     RUN_TEST(test_overrides_beat_the_file_and_later_ones_beat_earlier_ones);
     RUN_TEST(test_an_overridden_text_may_go_without_quotes);

@@ -10,6 +10,7 @@
 
 #include "json.h"
 #include "mctau/stepper.h"
+#include "pick.h"
 #include "say.h"
 #include "scene_file.h"
 #include "verbs.h"
@@ -397,7 +398,8 @@ static int drive_verb(const arguments *given)
     scene_file file;
     int exit_code = scene_file_read(&file, given);
     if (exit_code == 0) {
-        exit_code = drive_scene(&file, given);
+        exit_code = choose_stepper(&file);
+        exit_code = exit_code != 0 ? exit_code : drive_scene(&file, given);
         scene_file_free(&file);
     }
     return exit_code;

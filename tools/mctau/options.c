@@ -35,6 +35,7 @@ static void print_choices(const mct_field *field, FILE *file)
         for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
             fprintf(file, " %s", mct_steppers[i].name);
         }
+        fputs(" auto", file);
     }
     for (int i = 0; field->choices != NULL && field->choices[i] != NULL; i++) {
         fprintf(file, " %s", field->choices[i]);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "mctau/supervisor.h"
+#include "pick.h"
 #include "say.h"
 #include "verbs.h"
 
@@ -237,12 +238,22 @@ static int run_scene(const scene_file *file, const arguments *given)
     return exit_code != 0 ? exit_code : exit_code_of(&report);
 }
 
+/*
+ * Whether the mechanism is simulated here; not behind a bus or in a recording, "socketcan:can0",
+ * "candump:FILE".
+ */
+static bool simulates(const mct_scene *scene)
+{
+    return strchr(scene->hal, ':') == NULL;
+}
+
 static int run_verb(const arguments *given)
 {
     scene_file file;
     int exit_code = scene_file_read(&file, given);
     if (exit_code == 0) {
-        exit_code = run_scene(&file, given);
+        exit_code = simulates(&file.scene) ? choose_stepper(&file) : 0;
+        exit_code = exit_code != 0 ? exit_code : run_scene(&file, given);
         scene_file_free(&file);
     }
     return exit_code;

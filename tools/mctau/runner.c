@@ -6,6 +6,7 @@
 #include "mctau/input.h"
 #include "mctau/judge.h"
 #include "mctau/plant.h"
+#include "runner_cost.h"
 #include "runner_drive.h"
 #include "runner_replay.h"
 #include "runner_run.h"
@@ -120,4 +121,6 @@ const mct_runner MCT_RUNNER = {
     .mct = runner_mct,
     .replay = runner_replay,
     .drive = runner_drive,
+    .inputs = runner_inputs,
+    .try = runner_try,
 };

@@ -166,6 +166,19 @@ typedef struct {
     int csv_errno;
 } drive_result;
 
+/* A scene's run as its stepper, dt and substeps have it, under inputs that are known beforehand. */
+typedef struct {
+    const double *inputs; /* one a tick; NULL: none acts */
+    uint64_t ticks;       /* of the run, at least 1 */
+    double *states;       /* written unless NULL: ticks + 1 rows of all states, the first that of the start */
+    double sample_ns;     /* how long ticks are timed; 0: they are not */
+    bool count;           /* the instructions */
+    /* results */
+    bool diverged;
+    double ns;           /* per tick */
+    double instructions; /* per tick; NaN where nothing counts them */
+} trial;
+
 typedef struct {
     const char *precision;
     size_t real_size;
@@ -180,6 +193,11 @@ typedef struct {
     mct_status (*replay)(const char *log, replay_result *result, mct_message *why);
     mct_status (*drive)(const mct_scene *scene, const drive_options *options, drive_result *result,
                         mct_message *why);
+    /* Inputs of the first `ticks` ticks: those of [input], or what the controller applies in simulation. */
+    mct_status (*inputs)(const mct_scene *scene, const run_options *options, uint64_t ticks, double *inputs,
+                         mct_message *why);
+    /* Follows, times and counts, as the trial asks; the scene's controller and [input] do not act. */
+    mct_status (*try)(const mct_scene *scene, trial *asked, mct_message *why);
 } mct_runner;
 
 extern const mct_runner mct_runner_f64;

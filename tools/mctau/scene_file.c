@@ -77,13 +77,14 @@ static int read_text(const char *path, char **text, size_t *length)
     return say(EXIT_IO, "%s: the scene cannot be read: %s", shown_path(path), strerror(reason));
 }
 
+static const char mark[] = "#!set "; /* ahead of an override in the text that a log keeps */
+
 /*
  * The text that a log keeps. A line of the file that looks like an override (the file came out of a log) is
  * made an ordinary comment, since the run that is logged does not heed it.
  */
 static char *logged_text(const char *text, size_t length, const arguments *given)
 {
-    static const char mark[] = "#!set ";
     size_t size = length + 2;
     for (int i = 0; i < given->override_count; i++) {
         size += sizeof mark + strlen(given->overrides[i].assignment) + 1;
@@ -171,6 +172,14 @@ int scene_file_read(scene_file *self, const arguments *given)
         scene_file_free(self);
     }
     return exit_code;
+}
+
+void scene_file_note(scene_file *self, const char *key, const char *value)
+{
+    const size_t length = strlen(self->text);
+    const size_t more = sizeof mark + strlen(key) + strlen(value) + 2;
+    self->text = need_memory(realloc(self->text, length + more));
+    snprintf(self->text + length, more, "%s%s=%s\n", mark, key, value);
 }
 
 void scene_file_free(scene_file *self)

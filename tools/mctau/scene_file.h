@@ -24,6 +24,9 @@ typedef struct {
  */
 int scene_file_read(scene_file *self, const arguments *given);
 
+/* Adds an override to the text that a log keeps: what was chosen here, and not given. */
+void scene_file_note(scene_file *self, const char *key, const char *value);
+
 void scene_file_free(scene_file *self);
 
 /* Runner of a precision, NULL when this build has not got it. */

@@ -9,5 +9,7 @@ extern const verb verb_run;
 extern const verb verb_mct;
 extern const verb verb_replay;
 extern const verb verb_drive;
+extern const verb verb_cost;
+extern const verb verb_pick;
 
 #endif
