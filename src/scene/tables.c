@@ -50,7 +50,8 @@ static const char *const can_faults[] = {"none",    "drop",   "drop_commands", "
 static const mct_field scene_fields[] = {
     CHOICE("system", NULL, 0, system, "what is simulated; must be given"),
     CHOICE("stepper", NULL, MCT_STEPPER_RK4, stepper,
-           "how; left out: the most accurate that suits system and effects, but no taylor; auto: the command takes the "
+           "how; left out: the most accurate that suits system and effects, but no taylor; auto: the command "
+           "takes the "
            "cheapest that meets the tolerance, and its substeps"),
     REAL("tolerance", "", 1e-15, 1e6, 1e-6, tolerance,
          "of stepper = auto: largest error at any tick, relative to a state's largest value or to 1"),

@@ -451,7 +451,7 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
     const mct_real h = k->rotor.step.h;
     mct_rotor_series y;
     mct_vector_series axes[3];
-    mct_series v[3];
+    mct_series v[3] = {{0}}; /* the compiler cannot see that all that is summed is written */
     (void)u;
     mct_rotor_series_start(&k->rotor, x + Q, x + W, &y);
     for (int axis = 0; axis < 3; axis++) {
