@@ -250,6 +250,8 @@ static void test_motion_follows_the_sources_torque_in_quadruple_precision(void)
             const double error = error_of(&now, stepper, 1e-3, end);
             printf(" %s %.1e", mct_steppers[stepper].name, error);
             TEST_ASSERT_TRUE(stepper != MCT_STEPPER_RK4 || error <= 1e-9 * growth);
+            TEST_ASSERT_TRUE(stepper != MCT_STEPPER_TAYLOR6 ||
+                             error <= 1e-9); /* whatever the motion amplifies */
         }
         printf(", growth %.1e\n", growth);
     }
