@@ -17,6 +17,9 @@ enum {
     MCT_STEPPER_TAYLOR8,
     MCT_STEPPER_TAYLOR12,
     MCT_STEPPER_EXPO,
+    MCT_STEPPER_EXPO8,
+    MCT_STEPPER_RKN6,
+    MCT_STEPPER_SPLIT3,
     MCT_STEPPER_DISCRETE,
     MCT_STEPPER_COUNT
 };
@@ -27,8 +30,8 @@ typedef struct {
     const char *doc; /**< scheme, role, cost */
     /** Largest h R/L at which the scheme follows an inductive motor; 0 when any will do. */
     double motor_stability_limit;
-    /** Made of derivatives: no kernel where an effect has a kink (coulomb, drag), and only for scenes that name it. */
-    bool is_series;
+    bool needs_smooth; /**< no kernel where an effect has a kink: coulomb, drag */
+    bool is_special;   /**< for scenes that name it: never chosen for one that leaves its stepper out */
 } mct_stepper;
 
 /** All steppers, by the enumeration above. */

@@ -328,7 +328,7 @@ static mct_status examine_stepper(const mct_scene *scene, const mct_system *syst
         mct_message_add(sentence, system->name);
         mct_message_add(sentence, " with ");
         add_effects(sentence, effects);
-        if (stepper->is_series && (effects & (MCT_COULOMB | MCT_DRAG))) {
+        if (stepper->needs_smooth && (effects & (MCT_COULOMB | MCT_DRAG))) {
             mct_message_add(sentence, ", for a series ends where friction has a kink");
         }
         mct_message_add(sentence, "; allowed ");

@@ -338,7 +338,7 @@ int32_t mct_best_stepper(const mct_scene *scene)
     int32_t best = -1;
     for (int32_t i = 0; i < MCT_STEPPER_COUNT; i++) {
         /* Of equal order the later one: it treats more of the motion exactly. */
-        if (mct_stepper_suits(scene, i) && !mct_steppers[i].is_series &&
+        if (mct_stepper_suits(scene, i) && !mct_steppers[i].is_special &&
             (best < 0 || mct_steppers[i].order >= mct_steppers[best].order)) {
             best = i;
         }

@@ -112,7 +112,7 @@ static void test_a_scene_that_names_no_stepper_gets_no_series(void)
     for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
         mct_scene scene;
         mct_scene_defaults(&scene, system);
-        TEST_ASSERT_FALSE(mct_steppers[scene.stepper].is_series);
+        TEST_ASSERT_FALSE(mct_steppers[scene.stepper].is_special);
     }
     mct_scene scene;
     mct_message why;

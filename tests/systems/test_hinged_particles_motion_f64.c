@@ -263,7 +263,7 @@ static void test_each_stepper_has_its_order(void)
         quad end[2];
         follow_textbook(&motions[i], end);
         FOR_EACH_STEPPER (stepper, scene_of_motion(&motions[i], 0).system, MCT_GRAVITY | MCT_VISCOUS) {
-            if (mct_steppers[stepper].is_series) {
+            if (mct_steppers[stepper].needs_smooth) {
                 continue; /* at rounding by 2 ms: tests/steppers/test_order_f64.c */
             }
             const double order =
