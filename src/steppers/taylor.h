@@ -5,8 +5,9 @@
  * the first. A system writes the series of its rates, term by term, with the functions below; a coordinate, which is a
  * derivative ahead of its rate, gets one term more. The first order, with that term, is the source's scheme (`seed`).
  *
- * The order is an argument and loops stay loops: one kernel serves all orders (src/systems/kernels.h), and unrolled ones
- * take many times as long to compile and are no faster.
+ * The order of a kernel is a literal: loops unroll, and terms stay in registers. A step is one chain of operations, each
+ * waiting for the one before, so what depends on the newest terms comes last in a sum, with its factors multiplied
+ * beforehand.
  * Source: the recurrences are Steffensen's; Hairer, Norsett, Wanner, Solving ODEs I, I.8.
  */
 #ifndef MCT_STEPPERS_TAYLOR_H
@@ -43,6 +44,7 @@ MCT_INLINE mct_real mct_series_share(int n)
 MCT_INLINE mct_real mct_series_product(const mct_real *a, const mct_real *b, int n)
 {
     mct_real sum = 0;
+    MCT_UNROLL
     for (int j = n - 1; j > 0; j--) {
         sum += a[j] * b[n - j];
     }
@@ -57,6 +59,7 @@ MCT_INLINE void mct_series_products(const mct_real *a, const mct_real *b, const 
                                     mct_real *ab, mct_real *ac)
 {
     mct_real first = 0, second = 0;
+    MCT_UNROLL
     for (int j = n - 1; j > 0; j--) {
         first += a[j] * b[n - j];
         second += a[j] * c[n - j];
@@ -73,34 +76,44 @@ MCT_INLINE void mct_series_products(const mct_real *a, const mct_real *b, const 
 MCT_INLINE void mct_series_sincos(const mct_real *rate, mct_real h, int n, mct_real *s, mct_real *c)
 {
     const mct_real share = h * mct_series_share(n);
-    mct_real up, down;
-    mct_series_products(rate, c, s, n, &up, &down);
-    s[n + 1] = share * up;
-    c[n + 1] = -share * down;
+    mct_real up = 0, down = 0;
+    MCT_UNROLL
+    for (int j = 1; j < n; j++) {
+        up += rate[j] * c[n - j];
+        down += rate[j] * s[n - j];
+    }
+    if (n > 0) {
+        up = share * up + (share * c[0]) * rate[n];
+        down = share * down + (share * s[0]) * rate[n];
+    }
+    s[n + 1] = up + (share * rate[0]) * c[n];
+    c[n + 1] = -down - (share * rate[0]) * s[n];
 }
 
-/* Increment of what has the series; the smallest terms first. */
+/* Increment of what has the series: from the smallest term up, the two newest by themselves. */
 MCT_INLINE mct_real mct_series_sum(const mct_real *series, int order)
 {
-    mct_real sum = series[order];
-    for (int n = order - 1; n > 0; n--) {
+    mct_real sum = 0;
+    MCT_UNROLL
+    for (int n = order - 2; n > 0; n--) {
         sum += series[n];
     }
-    return sum;
+    return sum + (series[order] + series[order - 1]);
 }
 
 /* Increments of a coordinate and of its rate, which has the series. */
 MCT_INLINE void mct_series_increments(const mct_real *rate, mct_real h, int order, mct_real *coordinate,
                                       mct_real *of_rate)
 {
-    mct_real way = mct_series_share(order) * rate[order];
-    mct_real sum = rate[order];
-    for (int n = order - 1; n > 0; n--) {
+    mct_real way = 0;
+    MCT_UNROLL
+    for (int n = order - 2; n > 0; n--) {
         way += mct_series_share(n) * rate[n];
-        sum += rate[n];
     }
-    *coordinate = h * (way + rate[0]);
-    *of_rate = sum;
+    const mct_real newest =
+        mct_series_share(order) * rate[order] + mct_series_share(order - 1) * rate[order - 1];
+    *coordinate = h * ((rate[0] + way) + newest);
+    *of_rate = mct_series_sum(rate, order);
 }
 
 #endif

@@ -299,7 +299,11 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
     v[0] = x[2];
     w[0] = x[3];
     current[0] = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
+    mct_real to_v[2], to_w[2]; /* by a unit of impulse on cart and pole */
+    solve(k, MCT_GRAVITY, s[0], c[0], 1, 0, to_v);
+    solve(k, MCT_GRAVITY, s[0], c[0], 0, 1, to_w);
     mct_real cw = c[0] * w[0];
+    MCT_UNROLL
     for (int n = 0; n < order; n++) {
         const mct_real part = mct_series_share(n);
         const mct_real share = h * part;
@@ -308,13 +312,13 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
         mct_real ca = 0; /* as the next cw, but for c[0] times what is sought */
         s[n + 1] = share * cw;
         cw = 0;
+        MCT_UNROLL
         for (int j = n; j > 0; j--) { /* what is known first, first */
             sw += s[j] * w[n - j];
             cw += c[j] * w[n + 1 - j];
             ca += c[j] * a[n - j];
         }
-        c[n + 1] = -share * (sw + s[0] * w[n]);
-        cw += c[n + 1] * w[0];
+        c[n + 1] = -share * sw - (share * s[0]) * w[n];
         mct_real f1 =
             mct_motor_force(&k->motor, effects, input, (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0);
         mct_real f2 = 0;
@@ -327,13 +331,12 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
         if (effects & MCT_VISCOUS) {
             f2 -= k->pole_viscous * w[n];
         }
-        mct_real change[2];
-        solve(k, MCT_GRAVITY, s[0], c[0], share * f1 - k->moment * cw, share * f2 - k->moment * (part * ca),
-              change);
-        v[n + 1] = change[0];
-        w[n + 1] = change[1];
-        a[n] = (mct_real)(n + 1) * change[0];
-        cw += c[0] * change[1];
+        const mct_real on_cart = (share * f1 - k->moment * cw) - (k->moment * w[0]) * c[n + 1];
+        const mct_real on_pole = share * f2 - (k->moment * part) * ca;
+        v[n + 1] = to_v[0] * on_cart + to_w[0] * on_pole;
+        w[n + 1] = to_v[1] * on_cart + to_w[1] * on_pole;
+        a[n] = (mct_real)(n + 1) * v[n + 1];
+        cw += c[n + 1] * w[0] + c[0] * w[n + 1];
         if (effects & MCT_MOTOR_INDUCTIVE) {
             current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[n], current[n]);
         }

@@ -109,19 +109,29 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
 {
     const mct_hinge *k = constants;
     const mct_real h = k->step.h;
+    const mct_real turn = h * k->inverse_inertia;
     mct_series s, c, w;
     if (effects & MCT_GRAVITY) {
         mct_sincos(x[0], &s[0], &c[0]);
     }
     w[0] = x[1];
+    MCT_UNROLL
     for (int n = 0; n < order; n++) {
-        const mct_real torque = (effects & MCT_GRAVITY)
-                                    ? mct_hinge_torque(k, effects, s[n], c[n], w[n], n == 0 ? u : 0)
-                                    : mct_hinge_torque(k, effects, 0, 0, w[n], n == 0 ? u : 0);
+        const mct_real share = turn * mct_series_share(n);
+        mct_real change = n == 0 ? turn * u : 0;
+        if (effects & MCT_VISCOUS) {
+            change -= (share * k->viscous) * w[n];
+        }
+        if ((effects & MCT_GRAVITY) && (effects & MCT_HINGE_COSINE)) {
+            change += (share * k->cosine_moment) * c[n];
+        }
+        if ((effects & MCT_GRAVITY) && (effects & MCT_HINGE_SINE)) {
+            change += (share * k->sine_moment) * s[n];
+        }
+        w[n + 1] = change;
         if (effects & MCT_GRAVITY) {
             mct_series_sincos(w, h, n, s, c);
         }
-        w[n + 1] = h * mct_series_share(n) * (k->inverse_inertia * torque);
     }
     mct_series_increments(w, h, order, &dx[0], &dx[1]);
 }

@@ -161,79 +161,48 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
     (void)dx;
 }
 
-/* --- Taylor's method: one body for all orders, and none for effects that are not smooth --- */
-
-/* Constants and order on their way through mct_advance. */
-typedef struct {
-    const void *constants;
-    int order;
-} mct_ordered;
-
-/* The including file's step, taylor(constants, effects, order, x, u, dx), over a literal mask. */
-#define MCT_TAYLOR_INCREMENTS                                                                             \
-    MCT_INLINE void taylor_increments(const void *self, unsigned effects, const mct_real *x, mct_real u,  \
-                                      mct_real *dx)                                                       \
-    {                                                                                                     \
-        taylor(((const mct_ordered *)self)->constants, effects, ((const mct_ordered *)self)->order, x, u, \
-               dx);                                                                                       \
-    }
-#define MCT_TAYLOR_KERNEL(remainder, n, number, mask)                                                       \
-    static void taylor_##number(const constants_t *k, mct_state *state, mct_real u, int32_t steps,          \
-                                int order)                                                                  \
-    {                                                                                                       \
-        const mct_ordered self = {k, order};                                                                \
-        mct_advance(taylor_increments, mct_no_friction, &self, remainder, (mask) | MCT_ALWAYS, n, state, u, \
-                    steps);                                                                                 \
-    }                                                                                                       \
-    MCT_TAYLOR_ORDER(4, number)                                                                             \
-    MCT_TAYLOR_ORDER(6, number)                                                                             \
-    MCT_TAYLOR_ORDER(8, number)                                                                             \
-    MCT_TAYLOR_ORDER(12, number)
-#define MCT_TAYLOR_ORDER(order, number)                                                                      \
-    static void taylor##order##_##number(const void *constants, mct_state *state, mct_real u, int32_t steps) \
-    {                                                                                                        \
-        taylor_##number(constants, state, u, steps, order);                                                  \
-    }
-
-#define MCT_TAYLOR_QUAD(remainder, n, number, mask, A, B)     \
-    MCT_TAYLOR_KERNEL(remainder, n, number##_0, mask)         \
-    MCT_TAYLOR_KERNEL(remainder, n, number##_1, (mask) | (A)) \
-    MCT_TAYLOR_KERNEL(remainder, n, number##_2, (mask) | (B)) \
-    MCT_TAYLOR_KERNEL(remainder, n, number##_3, (mask) | (A) | (B))
-#define MCT_TAYLOR_NAMES(order, number)                                                       \
-    taylor##order##_##number##_0, taylor##order##_##number##_1, taylor##order##_##number##_2, \
-        taylor##order##_##number##_3
-
-/* ROW(order): the names of one order's kernels; the others of `size` stay NULL. */
-#define MCT_TAYLOR_TABLES(size, ROW)                          \
-    static const mct_kernel taylor4_kernels[size] = {ROW(4)}; \
-    static const mct_kernel taylor6_kernels[size] = {ROW(6)}; \
-    static const mct_kernel taylor8_kernels[size] = {ROW(8)}; \
-    static const mct_kernel taylor12_kernels[size] = {ROW(12)};
+/* --- Steppers that need a smooth motion: no kernels for effects with a kink; the others of a table stay NULL --- */
 
 /* Of a system with a motor, */
-#define MCT_TAYLOR_MOTOR_KERNELS(remainder)                                        \
-    MCT_TAYLOR_INCREMENTS                                                          \
-    MCT_TAYLOR_QUAD(remainder, MCT_MAX_ENCODERS, 0, 0, MCT_GRAVITY, MCT_VISCOUS)   \
-    MCT_TAYLOR_QUAD(remainder, MCT_MAX_ENCODERS, 8, 8, MCT_GRAVITY, MCT_VISCOUS)   \
-    MCT_TAYLOR_QUAD(remainder, MCT_MAX_ENCODERS, 16, 16, MCT_GRAVITY, MCT_VISCOUS) \
-    MCT_TAYLOR_TABLES(MCT_MOTOR_KERNELS, MCT_TAYLOR_MOTOR_ROW)
-#define MCT_TAYLOR_MOTOR_ROW(order) \
-    MCT_TAYLOR_NAMES(order, 0), [8] = MCT_TAYLOR_NAMES(order, 8), [16] = MCT_TAYLOR_NAMES(order, 16)
+#define MCT_SMOOTH_MOTOR_KERNELS(stepper, remainder, expression)                        \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                          \
+    MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, 0)                                \
+    MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, 8)                                \
+    MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, 16)                               \
+    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {                    \
+        MCT_SMOOTH_KERNEL_NAMES(stepper, 0), [8] = MCT_SMOOTH_KERNEL_NAMES(stepper, 8), \
+        [16] = MCT_SMOOTH_KERNEL_NAMES(stepper, 16)};
+#define MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, motor) \
+    MCT_KERNEL(stepper, remainder, motor, 0)                     \
+    MCT_KERNEL(stepper, remainder, motor, 1)                     \
+    MCT_KERNEL(stepper, remainder, motor, 2)                     \
+    MCT_KERNEL(stepper, remainder, motor, 3)
+#define MCT_SMOOTH_KERNEL_NAMES(stepper, motor) \
+    stepper##_##motor##_0, stepper##_##motor##_1, stepper##_##motor##_2, stepper##_##motor##_3
 
 /* or of `count` switches, of which the first two or three are smooth. */
-#define MCT_TAYLOR_KERNELS_2(remainder, n, count, A, B) \
-    MCT_TAYLOR_INCREMENTS                               \
-    MCT_TAYLOR_QUAD(remainder, n, s, 0, A, B)           \
-    MCT_TAYLOR_TABLES(1 << (count), MCT_TAYLOR_ROW_2)
-#define MCT_TAYLOR_KERNELS_3(...) MCT_TAYLOR_KERNELS_3_OF(__VA_ARGS__)
-#define MCT_TAYLOR_KERNELS_3_OF(remainder, n, count, A, B, C) \
-    MCT_TAYLOR_INCREMENTS                                     \
-    MCT_TAYLOR_QUAD(remainder, n, s0, 0, A, B)                \
-    MCT_TAYLOR_QUAD(remainder, n, s1, C, A, B)                \
-    MCT_TAYLOR_TABLES(1 << (count), MCT_TAYLOR_ROW_3)
-#define MCT_TAYLOR_ROW_2(order) MCT_TAYLOR_NAMES(order, s)
-#define MCT_TAYLOR_ROW_3(order) MCT_TAYLOR_NAMES(order, s0), MCT_TAYLOR_NAMES(order, s1)
+#define MCT_SMOOTH_KERNELS_2(stepper, remainder, n, count, A, B, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                               \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                              \
+    static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_QUAD_NAMES(stepper, s)};
+#define MCT_SMOOTH_KERNELS_3(...) MCT_SMOOTH_KERNELS_3_OF(__VA_ARGS__)
+#define MCT_SMOOTH_KERNELS_3_OF(stepper, remainder, n, count, A, B, C, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                     \
+    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                                \
+    static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_OCTET_NAMES(stepper, s)};
+
+/* --- Taylor's method: the including file's step, taylor(constants, effects, order, x, u, dx), by literal orders --- */
+
+#define MCT_TAYLOR_OF_ORDER(KERNELS, order, ...) \
+    KERNELS(taylor##order, __VA_ARGS__, taylor(k, effects, order, x, u, dx))
+#define MCT_TAYLOR(KERNELS, ...)                 \
+    MCT_TAYLOR_OF_ORDER(KERNELS, 4, __VA_ARGS__) \
+    MCT_TAYLOR_OF_ORDER(KERNELS, 6, __VA_ARGS__) \
+    MCT_TAYLOR_OF_ORDER(KERNELS, 8, __VA_ARGS__) \
+    MCT_TAYLOR_OF_ORDER(KERNELS, 12, __VA_ARGS__)
+#define MCT_TAYLOR_MOTOR_KERNELS(remainder) MCT_TAYLOR(MCT_SMOOTH_MOTOR_KERNELS, remainder)
+#define MCT_TAYLOR_KERNELS_2(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_2, __VA_ARGS__)
+#define MCT_TAYLOR_KERNELS_3(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_3, __VA_ARGS__)
 
 /* Their rows in the table of a system's kernels. */
 #define MCT_TAYLOR_ROWS                                                               \

@@ -270,6 +270,7 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
         base[axis][0] *= -k->base[axis].peak;
     }
     w[0] = x[1];
+    MCT_UNROLL
     for (int n = 0; n < order; n++) {
         const mct_real share = h * mct_series_share(n);
         mct_real sum = torque(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, w[n], n == 0 ? u : 0);
