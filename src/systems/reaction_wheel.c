@@ -109,7 +109,13 @@ static mct_symmetric2 inverse_of(double J, double I_w, double e11, double e22)
     return (mct_symmetric2){(mct_real)(m22 / det), (mct_real)(-I_w / det), (mct_real)(m11 / det)};
 }
 
-/* xdot = A x + B input + e g(th1), x = (th1, th2, th1d, th2d, current); returns the number of states. */
+static double weight_moment(const mct_scene *scene, uint32_t effects)
+{
+    const double *p = scene->parameters;
+    return (effects & MCT_GRAVITY) ? (p[ARM_MOMENT] + p[WHEEL_MASS] * p[ARM_LENGTH]) * p[GRAVITY] : 0;
+}
+
+/* xdot = A x + B input + e sin th1, x = (th1, th2, th1d, th2d, current); returns the number of states. */
 static int linear_part(const mct_scene *scene, uint32_t effects, double *A, double *B, double *e)
 {
     const double *p = scene->parameters;
@@ -138,8 +144,8 @@ static int linear_part(const mct_scene *scene, uint32_t effects, double *A, doub
     arm[3] = nu2 * inverse_J;
     B[2] = -torque_per_input * inverse_J;
     B[3] = torque_per_input * (inverse_I + inverse_J);
-    e[2] = inverse_J;
-    e[3] = -inverse_J;
+    e[2] = inverse_J * weight_moment(scene, effects);
+    e[3] = -e[2];
     wheel[2] = -arm[2];
     wheel[3] = -nu2 * (inverse_I + inverse_J);
     if (effects & MCT_MOTOR_INDUCTIVE) {
@@ -154,12 +160,6 @@ static int linear_part(const mct_scene *scene, uint32_t effects, double *A, doub
     return states;
 }
 
-static double weight_moment(const mct_scene *scene)
-{
-    const double *p = scene->parameters;
-    return (scene->effects & MCT_GRAVITY) ? (p[ARM_MOMENT] + p[WHEEL_MASS] * p[ARM_LENGTH]) * p[GRAVITY] : 0;
-}
-
 static mct_status prepare(const struct mct_scene *scene, double h, void *constants, struct mct_message *why)
 {
     constants_t *k = constants;
@@ -172,7 +172,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->step = mct_step_of(h);
     k->arm_inertia = (mct_real)J;
     k->wheel_inertia = (mct_real)I_w;
-    k->weight_moment = (mct_real)weight_moment(scene);
+    k->weight_moment = (mct_real)weight_moment(scene, effects);
     k->gravity = (mct_real)((effects & MCT_GRAVITY) ? p[GRAVITY] : 0);
     k->arm_viscous = (mct_real)(viscous ? p[ARM_FRICTION] : 0);
     k->wheel_viscous = (mct_real)(viscous ? p[WHEEL_FRICTION] : 0);
@@ -214,11 +214,15 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->outer_arm_mass = (mct_real)mct_max(0, 0.5 * (sum + difference));
     k->inner_arm_mass = (mct_real)mct_max(0, 0.5 * (sum - difference)); /* rounding may take it below */
 
+    const int nodes = scene->stepper == MCT_STEPPER_EXPO8 ? 4 : scene->stepper == MCT_STEPPER_EXPO ? 2 : 0;
+    if (nodes == 0) {
+        return MCT_OK;
+    }
     double A[MCT_MAX_STATES * MCT_MAX_STATES];
     double B[MCT_MAX_STATES];
     double e[MCT_MAX_STATES];
     const int states = linear_part(scene, effects, A, B, e);
-    status = mct_expo_prepare(&k->expo, 2, states, A, B, e, h);
+    status = mct_expo_prepare(&k->expo, nodes, 2, states, A, B, e, h);
     if (status != MCT_OK) {
         mct_message_add(
             why, "scene.dt: the linear part of this scene is too fast for the exact flow over one step");
@@ -346,15 +350,6 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
     }
 }
 
-/* The one nonlinearity, for `expo`. */
-MCT_INLINE mct_real weight(const void *constants, mct_real angle)
-{
-    const constants_t *k = constants;
-    mct_real s, c;
-    mct_sincos(angle, &s, &c);
-    return k->weight_moment * s;
-}
-
 static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
                             mct_real *dx)
 {
@@ -466,9 +461,8 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
     }
     double e[4];
     model->states = linear_part(scene, effects, model->A, model->B, e);
-    const double stiffness = weight_moment(scene);
-    model->A[2 * 4 + 0] += e[2] * stiffness;
-    model->A[3 * 4 + 0] += e[3] * stiffness;
+    model->A[2 * 4 + 0] += e[2];
+    model->A[3 * 4 + 0] += e[3];
 }
 
 MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
@@ -476,14 +470,37 @@ MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->ste
 MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
 MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 0, k, k->step, effects, 2, x, u, dx))
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
-MCT_STEPPER_KERNELS(expo, 0, mct_expo_increments(weight, k, &k->expo, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(expo, 0, mct_expo_increments(&k->expo, 2, 1, effects, 2, x, u, dx))
+
+/* `expo8` has none with dry friction. */
+MCT_INLINE void expo8_increments(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                                 mct_real *dx)
+{
+    const constants_t *k = constants;
+    mct_expo_increments(&k->expo, 4, 3, effects, 2, x, u, dx);
+}
+#define EXPO8_KERNELS(motor)       \
+    MCT_KERNEL(expo8, 0, motor, 0) \
+    MCT_KERNEL(expo8, 0, motor, 1) \
+    MCT_KERNEL(expo8, 0, motor, 2) \
+    MCT_KERNEL(expo8, 0, motor, 3)
+#define EXPO8_NAMES(motor) expo8_##motor##_0, expo8_##motor##_1, expo8_##motor##_2, expo8_##motor##_3
+EXPO8_KERNELS(0)
+EXPO8_KERNELS(8)
+EXPO8_KERNELS(16)
+static const mct_kernel expo8_kernels[MCT_MOTOR_KERNELS] = {
+    EXPO8_NAMES(0), [8] = EXPO8_NAMES(8), [16] = EXPO8_NAMES(16)};
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
     static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
-        [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
-        [MCT_STEPPER_EXPO] = expo_kernels, MCT_TAYLOR_ROWS,
+        [MCT_STEPPER_SEED] = seed_kernels,
+        [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,
+        [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_EXPO] = expo_kernels,
+        [MCT_STEPPER_EXPO8] = expo8_kernels,
+        MCT_TAYLOR_ROWS,
     };
     return mct_kernel_of(kernels, stepper, effects);
 }
