@@ -10,8 +10,10 @@
  * Differences   none in the equations; the rest length is ours, the source has l0 = 0. Weight, spring and k1 are
  *               forces on the ball; torque and k2 are couples, which the rod transmits.
  * Constraint    the rod, e = m xdd - (weight + spring + friction along the rod): (torque - k2 w) / r across it.
- * Integration   M is singular at r = 0, where the ball may pass, the motion is not: but for `seed`, a step is made in
- *               Cartesian coordinates along and across the rod as it stands at its start,
+ * Integration   M is singular at r = 0, where the ball may pass, the motion is not. `rk4` and the series up to order 8 integrate
+ *               the equation as it stands where a step stays away from the pivot (stays_away). Else, and always with
+ *               `taylor12`, `euler` and `leap`, a step is made in Cartesian coordinates along and
+ *               across the rod as it stands at its start,
  *                   xdd = g' - k/m (1 - l0/R) X - k1/m (X.xd) X / R^2 + (torque - k2 w) / (m R^2) (-X2, X1),
  *               and its increments are turned into polar ones without a difference of large numbers. A ball that
  *               passes the pivot comes out on the other side: r stays positive, th jumps by half a turn.
@@ -24,6 +26,7 @@
 
 #include "../steppers/euler.h"
 #include "../steppers/leap.h"
+#include "../steppers/rk4.h"
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
 #include "../steppers/taylor.h"
@@ -66,6 +69,16 @@ static const char *const particle_names[] = {"ball"};
 #define FASTEST_FRICTION 1.0   /* h k2/(m r^2) */
 #define FASTEST_TORQUE   0.1   /* h^2 torque/(m r^2) */
 #define PIVOT_SQUARE     1e-24 /* [m^2] this near, polar coordinates say nothing about the velocity */
+
+/* The sum of nothing. Not +0, which changes -0: compilers keep that addition, and a series waits for it. */
+#define NOTHING MCT_R(-0.0)
+
+/* A step that is rarely taken: one function for all effects, for which the others keep no registers free. */
+#if defined __GNUC__
+#define RARE static __attribute__((noinline, cold))
+#else
+#define RARE static
+#endif
 
 static mct_status refuse(struct mct_message *why, const char *key, double found, const char *unit,
                          const char *reason, double allowed)
@@ -134,6 +147,11 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return check(scene, h, why);
 }
 
+MCT_INLINE mct_real size_of(mct_real a)
+{
+    return a < 0 ? -a : a;
+}
+
 /* ---- a step in the frame of the rod as it stands at the start of the step: axis 1 along it, axis 2 across ---- */
 
 typedef struct {
@@ -154,12 +172,12 @@ MCT_INLINE frame frame_at(const constants_t *k, unsigned effects, mct_real angle
     return now;
 }
 
-/* Acceleration by weight, spring and torque; `inverse_square` is 1 / R^2 there. */
-MCT_INLINE void accelerate(const frame *now, unsigned effects, const mct_real *y, mct_real square,
-                           mct_real inverse_square, mct_real u, mct_real *a)
+/* Acceleration by weight, spring and torque; `inverse` is 1 / R there. */
+MCT_INLINE void accelerate(const frame *now, unsigned effects, const mct_real *y, mct_real inverse,
+                           mct_real u, mct_real *a)
 {
     const constants_t *k = now->k;
-    const mct_real turning = k->inverse_mass * u * inverse_square;
+    const mct_real turning = k->inverse_mass * u * (inverse * inverse);
     a[0] = -turning * y[1];
     a[1] = turning * y[0];
     if (effects & MCT_GRAVITY) {
@@ -169,7 +187,7 @@ MCT_INLINE void accelerate(const frame *now, unsigned effects, const mct_real *y
     if (effects & MCT_SPRING) {
         mct_real pull = k->stiffness_rate;
         if (k->rest_rate > 0) {
-            pull -= k->rest_rate * mct_inverse_root(square);
+            pull -= k->rest_rate * inverse;
         }
         a[0] -= pull * y[0];
         a[1] -= pull * y[1];
@@ -183,16 +201,42 @@ MCT_INLINE mct_real square_of(const mct_real *y)
     return y[0] * y[0] + y[1] * y[1] + smallest;
 }
 
+/*
+ * (cosine - 1) / tan^2 of a small turn from z = tan^2 of it, |tan| <= SMALL_TANGENT: the series of 1 / sqrt(1 + z).
+ * What it leaves out of the cosine is less than a tenth of a rounding.
+ */
+#define SMALL_TANGENT MCT_R(1.0 / 32)
+MCT_INLINE mct_real cosine_less_one_by(mct_real z)
+{
+    const mct_real zz = z * z;
+#if MCT_REAL_IS_FLOAT
+    return (-0.5F + 0.375F * z) - 0.3125F * zz;
+#else
+    return (-0.5 + 0.375 * z) + zz * ((-0.3125 + 0.2734375 * z) - 0.24609375 * zz);
+#endif
+}
+
+/* 1 / R. At the start of a step Y is 0; within it, it is small as a rule. */
+MCT_INLINE mct_real inverse_of(const mct_real *y)
+{
+    if (!(size_of(y[1]) <= SMALL_TANGENT * y[0])) {
+        return mct_inverse_root(square_of(y));
+    }
+    const mct_real inverse = 1 / y[0];
+    const mct_real z = y[1] * inverse * (y[1] * inverse);
+    return inverse + inverse * (z * cosine_less_one_by(z));
+}
+
 /* y = (X, Xd), rates of both. */
 MCT_INLINE void derivative(const void *self, unsigned effects, const mct_real *y, mct_real u, mct_real *dy)
 {
     const frame *now = self;
     const constants_t *k = now->k;
-    const mct_real square = square_of(y);
-    const mct_real inverse_square = 1 / square;
+    const mct_real inverse = inverse_of(y);
+    const mct_real inverse_square = inverse * inverse;
     dy[0] = y[2];
     dy[1] = y[3];
-    accelerate(now, effects, y, square, inverse_square, u, dy + 2);
+    accelerate(now, effects, y, inverse, u, dy + 2);
     if (effects & MCT_VISCOUS) {
         const mct_real radial = k->length_damping * (y[0] * y[2] + y[1] * y[3]) * inverse_square;
         const mct_real rate = (y[0] * y[3] - y[1] * y[2]) * inverse_square;
@@ -203,15 +247,14 @@ MCT_INLINE void derivative(const void *self, unsigned effects, const mct_real *y
 }
 
 /* Velocity increment; damping is taken at the new velocity (`share` 1: euler) or at the mean of both (1/2: leap). */
-MCT_INLINE void kick(const frame *now, unsigned effects, const mct_real *y, mct_real u, mct_real share,
-                     mct_real *dy)
+MCT_INLINE void kick(const frame *now, unsigned effects, const mct_real *y, mct_real inverse, mct_real u,
+                     mct_real share, mct_real *dy)
 {
     const constants_t *k = now->k;
     const mct_real h = k->step.h;
-    const mct_real square = square_of(y);
-    const mct_real inverse_square = 1 / square;
+    const mct_real inverse_square = inverse * inverse;
     mct_real a[2];
-    accelerate(now, effects, y, square, inverse_square, u, a);
+    accelerate(now, effects, y, inverse, u, a);
     if (effects & MCT_VISCOUS) { /* along and across the rod as it stands at y, times R */
         const mct_real length_damping = h * k->length_damping;
         const mct_real angle_damping = h * k->angle_damping * inverse_square;
@@ -231,13 +274,13 @@ MCT_INLINE void kick(const frame *now, unsigned effects, const mct_real *y, mct_
 
 MCT_INLINE void kick_implicit(const void *self, unsigned effects, const mct_real *y, mct_real u, mct_real *dy)
 {
-    kick(self, effects, y, u, 1, dy);
+    kick(self, effects, y, 1 / y[0], u, 1, dy); /* at the start of the step: Y = 0 */
 }
 
 MCT_INLINE void kick_symmetric(const void *self, unsigned effects, const mct_real *y, mct_real u,
                                mct_real *dy)
 {
-    kick(self, effects, y, u, MCT_R(0.5), dy);
+    kick(self, effects, y, inverse_of(y), u, MCT_R(0.5), dy);
 }
 
 /* Term n + 1 of p = 1/R from R^2 = q: 2 q p' = - q' p. */
@@ -261,7 +304,8 @@ MCT_INLINE void taylor_in_frame(const frame *now, unsigned effects, int order, c
 {
     const constants_t *k = now->k;
     const mct_real h = k->step.h;
-    const mct_real by_square = 1 / square_of(y);
+    const mct_real inverse_length = 1 / y[0]; /* at the start of the step: Y = 0 */
+    const mct_real by_square = inverse_length * inverse_length;
     const bool has_rest = (effects & MCT_SPRING) && k->rest_rate > 0;
     const bool is_turned = (effects & MCT_VISCOUS) || u != 0;
     const bool has_inverse = has_rest || is_turned;
@@ -275,8 +319,8 @@ MCT_INLINE void taylor_in_frame(const frame *now, unsigned effects, int order, c
     Y[0] = y[1];
     Xd[0] = y[2];
     Yd[0] = y[3];
-    square[0] = square_of(y);
-    inverse[0] = mct_inverse_root(square[0]);
+    square[0] = y[0] * y[0];
+    inverse[0] = inverse_length;
     for (int n = 0; n < order; n++) {
         const mct_real share = h * mct_series_share(n);
         mct_real a[2] = {0, 0};
@@ -334,19 +378,45 @@ MCT_INLINE void fail(mct_real *dx)
     dx[1] = dx[2] = dx[3] = 0;
 }
 
+/* (nearest length at which friction and torque can be followed)^2 */
+MCT_INLINE mct_real nearest_square(const constants_t *k, unsigned effects, mct_real u)
+{
+    const mct_real by_torque = k->near_torque * size_of(u);
+    return (effects & MCT_VISCOUS) ? by_torque + k->near_friction : by_torque;
+}
+
 /* Whether the step from (r, 0) by (dX, dY) comes nearer to the pivot than friction and torque can be followed. */
 MCT_INLINE bool comes_too_near(const constants_t *k, unsigned effects, mct_real r, const mct_real *dy,
                                mct_real square, mct_real u)
 {
-    mct_real limit = k->near_torque * (u < 0 ? -u : u);
-    if (effects & MCT_VISCOUS) {
-        limit += k->near_friction;
-    }
+    const mct_real limit = nearest_square(k, effects, u);
     const mct_real travelled = dy[0] * dy[0] + dy[1] * dy[1];
     const mct_real towards = -r * dy[0];
     const bool passes = towards > 0 && towards < travelled;
     const mct_real passed = r * dy[1];
     return square < limit || (passes && passed * passed < limit * travelled);
+}
+
+/*
+ * to_polar by series where the rod turns little, by t = Y/X its tangent: as exact, with no root and one division.
+ * R = X sqrt(1 + t^2), sqrt(1 + t^2) = (1 + t^2) cosine.
+ */
+MCT_INLINE void turn_little(const mct_real *x, mct_real X, mct_real Yd, const mct_real *dy, mct_real *dx)
+{
+    const mct_real inverse = 1 / X;
+    const mct_real t = dy[1] * inverse;
+    const mct_real z = t * t;
+    const mct_real e = cosine_less_one_by(z);
+    const mct_real cosine = 1 + z * e;
+#if MCT_REAL_IS_FLOAT
+    const mct_real rest = -1.0F / 3 + 1.0F / 5 * z;
+#else
+    const mct_real rest = (-1.0 / 3 + 1.0 / 5 * z) + z * z * ((-1.0 / 7 + 1.0 / 9 * z) - 1.0 / 11 * (z * z));
+#endif
+    dx[0] = dy[0] + dy[1] * t * (1 + (e + z * e));
+    dx[1] = t + t * (z * rest);
+    dx[2] = cosine * (dy[2] + t * Yd) + x[2] * (z * e);
+    dx[3] = cosine * cosine * inverse * ((dy[3] - x[3] * (dy[0] + dy[1] * t)) - t * (x[2] + dy[2]));
 }
 
 /* Increments of (r, th, rd, w) from those of (X, Xd). */
@@ -363,6 +433,10 @@ MCT_INLINE void to_polar(const constants_t *k, unsigned effects, const mct_real 
         fail(dx);
         return;
     }
+    if (size_of(Y) <= SMALL_TANGENT * X) {
+        turn_little(x, X, Yd, dy, dx);
+        return;
+    }
     const mct_real inverse = mct_inverse_root(square);
     const mct_real R = square * inverse;
     const mct_real X_less_R = X > 0 ? -Y * Y / (R + X) : X - R;
@@ -374,8 +448,8 @@ MCT_INLINE void to_polar(const constants_t *k, unsigned effects, const mct_real 
 
 /* ---- in polar coordinates ---- */
 
-MCT_INLINE void polar_derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                                 mct_real *dx)
+MCT_INLINE void polar_derivative_at(const void *constants, unsigned effects, const mct_real *x, mct_real s,
+                                    mct_real c, mct_real u, mct_real *dx)
 {
     const constants_t *k = constants;
     const mct_real r = x[0];
@@ -392,8 +466,6 @@ MCT_INLINE void polar_derivative(const void *constants, unsigned effects, const 
         turning -= k->angle_damping * w * inverse;
     }
     if (effects & MCT_GRAVITY) {
-        mct_real s, c;
-        mct_sincos(x[1], &s, &c);
         radial -= k->gravity * s;
         turning -= k->gravity * c;
     }
@@ -401,6 +473,14 @@ MCT_INLINE void polar_derivative(const void *constants, unsigned effects, const 
     dx[1] = w;
     dx[2] = radial;
     dx[3] = (turning - 2 * rd * w) * inverse;
+}
+
+MCT_INLINE void polar_derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
+                                 mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[1], &s, &c);
+    polar_derivative_at(constants, effects, x, s, c, u, dx);
 }
 
 /* The source's own step, in the source's coordinates, which end at the pivot. */
@@ -416,22 +496,171 @@ MCT_INLINE void polar_seed(const constants_t *k, unsigned effects, const mct_rea
 }
 
 /* A step in the frame of the rod, by one of the steppers: `step` from `y` to the increments `dy`. */
-#define STEP_IN_FRAME(name, step)                                                                           \
-    MCT_INLINE void name(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u, \
-                         mct_real *dx)                                                                      \
-    {                                                                                                       \
-        const constants_t *k = constants;                                                                   \
-        const frame now = frame_at(k, effects, x[1]);                                                       \
-        const mct_real y[4] = {x[0], 0, x[2], x[0] * x[3]};                                                 \
-        mct_real dy[4];                                                                                     \
-        step;                                                                                               \
-        (void)order;                                                                                        \
-        to_polar(k, effects, x, u, dy, dx);                                                                 \
+#define STEP_IN_FRAME(kind, name, step)                                                               \
+    kind void name(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u, \
+                   mct_real *dx)                                                                      \
+    {                                                                                                 \
+        const constants_t *k = constants;                                                             \
+        const frame now = frame_at(k, effects, x[1]);                                                 \
+        const mct_real y[4] = {x[0], 0, x[2], x[0] * x[3]};                                           \
+        mct_real dy[4];                                                                               \
+        step;                                                                                         \
+        (void)order;                                                                                  \
+        to_polar(k, effects, x, u, dy, dx);                                                           \
     }
-STEP_IN_FRAME(framed_euler, mct_euler(kick_implicit, &now, k->step, effects, 2, y, u, dy))
-STEP_IN_FRAME(framed_leap, mct_leap(kick_symmetric, &now, k->step, effects, 2, y, u, dy))
-STEP_IN_FRAME(framed_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
-STEP_IN_FRAME(taylor, taylor_in_frame(&now, effects, order, y, u, dy))
+STEP_IN_FRAME(MCT_INLINE, framed_euler, mct_euler(kick_implicit, &now, k->step, effects, 2, y, u, dy))
+STEP_IN_FRAME(MCT_INLINE, framed_leap, mct_leap(kick_symmetric, &now, k->step, effects, 2, y, u, dy))
+STEP_IN_FRAME(MCT_INLINE, framed_taylor, taylor_in_frame(&now, effects, order, y, u, dy))
+STEP_IN_FRAME(RARE, rare_taylor, taylor_in_frame(&now, effects, order, y, u, dy))
+STEP_IN_FRAME(RARE, rare_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
+
+/* ---- away from the pivot ---- */
+
+/*
+ * Whether a step is made in polar coordinates. It is short: by speed, fall, friction and torque at most a quarter of r.
+ * And it is no less exact so: r varies in every term, in the frame of the rod in the rest length's part of the force
+ * alone, whose acceleration, rest * r, therefore has to outweigh the motion's own, speed * r. That test knows no h: else
+ * the error would not go down by the order with the step.
+ */
+MCT_INLINE bool stays_away(const constants_t *k, unsigned effects, const mct_real *x, mct_real inverse,
+                           mct_real u)
+{
+    const mct_real h_square = k->step.h * k->step.h;
+    const mct_real stretching = x[2] * inverse;
+    const mct_real speed = stretching * stretching + x[3] * x[3];
+    mct_real fall = NOTHING;
+    mct_real slow = 0;
+    if (effects & MCT_SPRING) {
+        const mct_real rest = k->rest_rate * inverse;
+        fall += size_of(k->stiffness_rate - rest);
+        slow = MCT_R(0.5) * rest;
+    }
+    if (effects & MCT_GRAVITY) {
+        fall += k->gravity * inverse;
+    }
+    const mct_real couple = nearest_square(k, effects, u) * (inverse * inverse);
+    return speed < slow && h_square * (16 * speed + 4 * fall) + 4 * couple < 1;
+}
+
+/* Term n of a b, and of a a. */
+MCT_INLINE mct_real product(const mct_real *a, const mct_real *b, int n)
+{
+    mct_real sum = NOTHING;
+    MCT_UNROLL
+    for (int j = n - 1; j > 0; j--) {
+        sum += a[j] * b[n - j];
+    }
+    if (n > 0) {
+        sum += a[n] * b[0];
+    }
+    return sum + a[0] * b[n];
+}
+
+MCT_INLINE mct_real square(const mct_real *a, int n)
+{
+    mct_real half = NOTHING;
+    MCT_UNROLL
+    for (int j = 1; 2 * j < n; j++) {
+        half += a[j] * a[n - j];
+    }
+    const mct_real inner = n > 0 && n % 2 == 0 ? 2 * half + a[n / 2] * a[n / 2] : 2 * half;
+    return n > 0 ? inner + 2 * a[0] * a[n] : a[0] * a[0];
+}
+
+/*
+ * By terms, with lengths in units of r at the start, so that r and r^2 begin with 1: the force along the rod, and the
+ * torque, which changes the angular momentum r^2 w,
+ *     rdd = r w^2 - k/m (r - l0) - k1/m rd - g s,    (r^2 w)' = (torque - k2 w)/m - g r c,
+ *     (g s)' = g c w,    (g c)' = - g s w.
+ * The order is a literal: all loops vanish, and the terms stay in registers. In sums the latest term comes last.
+ */
+MCT_INLINE void polar_taylor(const constants_t *k, unsigned effects, int order, const mct_real *x,
+                             mct_real inverse, mct_real u, mct_real *dx)
+{
+    const mct_real h = k->step.h;
+    const mct_real push = k->inverse_mass * u * (inverse * inverse);
+    const mct_real damping = k->angle_damping * (inverse * inverse);
+    mct_series r, rr, rd, w, ww, along, across;
+    r[0] = 1;
+    rr[0] = 1;
+    rd[0] = x[2] * inverse;
+    w[0] = x[3];
+    if (effects & MCT_GRAVITY) {
+        const mct_real g = -k->gravity * inverse;
+        mct_real s, c;
+        mct_sincos(x[1], &s, &c);
+        along[0] = g * s;
+        across[0] = g * c;
+    }
+    mct_real way = NOTHING, turn = NOTHING, of_rd = NOTHING, of_w = NOTHING; /* but the first terms */
+    MCT_UNROLL
+    for (int n = 0; n < order; n++) {
+        const mct_real share = h * mct_series_share(n);
+        r[n + 1] = share * rd[n];
+        rr[n + 1] = square(r, n + 1);
+        ww[n] = square(w, n);
+        mct_real radial = NOTHING;
+        mct_real torque = n == 0 ? push : NOTHING;
+        if (effects & MCT_SPRING) {
+            radial -= k->stiffness_rate * r[n];
+            radial += n == 0 ? k->rest_rate * inverse : NOTHING;
+        }
+        if (effects & MCT_VISCOUS) {
+            radial -= k->length_damping * rd[n];
+            torque -= damping * w[n];
+        }
+        MCT_UNROLL
+        for (int j = n; j >= 0; j--) {
+            radial += r[j] * ww[n - j];
+        }
+        if (effects & MCT_GRAVITY) {
+            radial += along[n];
+            torque += product(r, across, n);
+            along[n + 1] = share * product(w, across, n);
+            across[n + 1] = -share * product(w, along, n);
+        }
+        mct_real carried = NOTHING; /* of (r^2 w) but w itself */
+        MCT_UNROLL
+        for (int j = n; j > 0; j--) {
+            carried += rr[j] * w[n + 1 - j];
+        }
+        carried += w[0] * rr[n + 1];
+        rd[n + 1] = share * radial;
+        w[n + 1] = share * torque - carried;
+        if (n > 0) {
+            way += r[n + 1];
+            turn += share * w[n];
+            of_rd += rd[n + 1];
+            of_w += w[n + 1];
+        }
+    }
+    const mct_real share = h * mct_series_share(order);
+    dx[0] = x[0] * (r[1] + (way + share * rd[order]));
+    dx[1] = h * w[0] + (turn + share * w[order]);
+    dx[2] = x[0] * (rd[1] + of_rd);
+    dx[3] = w[1] + of_w;
+}
+
+MCT_INLINE void rk4_step(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    if (stays_away(k, effects, x, 1 / x[0], u)) {
+        mct_rk4(polar_derivative_at, 1, k, k->step, effects, 2, x, u, dx);
+    } else {
+        rare_rk4(k, effects, 0, x, u, dx);
+    }
+}
+
+/* Not of order 12: its steps are so long that it costs a digit and more. */
+MCT_INLINE void taylor_step(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real u,
+                            mct_real *dx)
+{
+    const mct_real inverse = 1 / x[0];
+    if (stays_away(k, effects, x, inverse, u)) {
+        polar_taylor(k, effects, order, x, inverse, u, dx);
+    } else {
+        rare_taylor(k, effects, order, x, u, dx);
+    }
+}
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
                      mct_evaluation *out)
@@ -491,8 +720,11 @@ static const uint32_t switches[] = {SWITCHES, 0};
 MCT_KERNELS_3(seed, k->step.remainder, 2, SWITCHES, polar_seed(k, effects, x, u, dx))
 MCT_KERNELS_3(euler, k->step.remainder, 2, SWITCHES, framed_euler(k, effects, 0, x, u, dx))
 MCT_KERNELS_3(leap, k->step.remainder, 2, SWITCHES, framed_leap(k, effects, 0, x, u, dx))
-MCT_KERNELS_3(rk4, k->step.sixth_remainder, 2, SWITCHES, framed_rk4(k, effects, 0, x, u, dx))
-MCT_TAYLOR_KERNELS_3(k->step.remainder, 2, 3, SWITCHES)
+MCT_KERNELS_3(rk4, k->step.sixth_remainder, 2, SWITCHES, rk4_step(k, effects, x, u, dx))
+MCT_KERNELS_3(taylor4, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 4, x, u, dx))
+MCT_KERNELS_3(taylor6, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 6, x, u, dx))
+MCT_KERNELS_3(taylor8, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 8, x, u, dx))
+MCT_KERNELS_3(taylor12, k->step.remainder, 2, SWITCHES, framed_taylor(k, effects, 12, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {

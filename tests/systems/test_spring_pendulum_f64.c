@@ -3,7 +3,7 @@
  *
  * Without rest length and friction it is the isotropic harmonic oscillator about (0, -m g / k): x = a cos wt + b sin wt,
  * in long double. Else the source's polar equation (53) in quadruple precision by extrapolation; the kernels integrate
- * in Cartesian coordinates.
+ * in Cartesian coordinates where a step comes near the pivot.
  * Tolerances: rk4 errs by (w h)^4 w t / 120 of an oscillation of frequency w: 4e-9 at w = 10/s, h = 1 ms and t = 5 s
  * (the prototype's figure for the passage of the pivot, too), 1e-9 below 7/s.
  */
