@@ -9,7 +9,7 @@
 
 typedef struct {
     mct_rotor rotor;
-    mct_real first_moment[3]; /**< sum m b, in body axes [kg m] */
+    mct_real first_moment[3]; /**< sum m b, in principal axes [kg m] */
     mct_real gravity[3];      /**< in space axes [m/s^2] */
 } mct_ball_joint_constants;
 

@@ -15,9 +15,9 @@ typedef struct {
     mct_real gravity[3];        /**< in space axes [m/s^2] */
     mct_real drag;              /**< force of the air by the square of the centre's velocity [N s^2/m^2] */
     mct_real space_force[3];    /**< sum of those in space axes [N] */
-    mct_real space_lever[3][3]; /**< sum p F' of those: row in body axes, column in space axes [N m] */
-    mct_real body_force[3];     /**< sum of those in body axes [N] */
-    mct_real body_couple[3];    /**< sum p x F of those [N m] */
+    mct_real space_lever[3][3]; /**< sum p F' of those: row in principal axes, column in space axes [N m] */
+    mct_real body_force[3];     /**< sum of those in body axes, in principal axes [N] */
+    mct_real body_couple[3];    /**< sum p x F of those, in principal axes [N m] */
 } mct_rigid_body_constants;
 
 #endif

@@ -2,7 +2,7 @@
  * Ball joint: particles m at b, fixed to each other, that turn about a fixed pivot in all three ways.
  *
  * Equation      M wd + w x M w = sum x x m g - nu w,  x = r b,  M = - sum m R^2[x] = sum m (x'x - x x'),
- *               w the angular velocity in space axes. Steps are taken in body axes: rotor.h.
+ *               w the angular velocity in space axes. Steps are taken in principal axes: rotor.h.
  * Source        sections 4.2, 5.1 to 5.3, 5.5.1, eqs. 241-263, 297-313, 339-350.
  * Conventions   the pivot is the origin of space and of the body; q takes body axes to space axes.
  * Differences   (242) to (263), (298) to (312): thd is not the rate of the rotation vector but w; (310),
@@ -85,13 +85,17 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     }
     k->rotor.viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? p[FRICTION] : 0);
     for (int i = 0; i < 3; i++) {
-        k->first_moment[i] = (mct_real)(body.mass * body.center[i]);
+        double center = 0; /* along principal axis i */
+        for (int j = 0; j < 3; j++) {
+            center += (double)k->rotor.axes[i][j] * body.center[j];
+        }
+        k->first_moment[i] = (mct_real)(body.mass * center);
         k->gravity[i] = (mct_real)((scene->effects & MCT_GRAVITY) ? p[GRAVITY + i] : 0);
     }
     return status;
 }
 
-/* sum b x m r'g: of the weights, in body axes. */
+/* sum b x m r'g: of the weights, in principal axes. */
 MCT_INLINE void couple_at(const constants_t *k, unsigned effects, const mct_real *q, mct_real *couple)
 {
     mct_real gravity[3] = {0};
@@ -101,7 +105,7 @@ MCT_INLINE void couple_at(const constants_t *k, unsigned effects, const mct_real
     mct_cross(k->first_moment, gravity, couple);
 }
 
-/* --- steps in body axes: x is the attitude and the angular velocity in body axes --- */
+/* --- steps in principal axes: x is the attitude and the angular velocity of these --- */
 
 MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
                            mct_real *dx)
@@ -110,7 +114,7 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     mct_real couple[3];
     (void)u;
     couple_at(k, effects, x + Q, couple);
-    mct_quaternion_rate_body(x + Q, x + W, dx + Q);
+    mct_rotor_turn_rate(x + Q, x + W, dx + Q);
     mct_rotor_accelerate(&k->rotor, effects, couple, x + W, dx + W);
 }
 
@@ -162,18 +166,39 @@ MCT_INLINE void leap(const constants_t *k, unsigned effects, int order, const mc
     }
 }
 
+/* Half a kick, all of the turn, half a kick. */
+MCT_INLINE void split3(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
+{
+    mct_real couple[3], w[3], end[4], dw[3];
+    (void)order;
+    couple_at(k, effects, x + Q, couple);
+    mct_rotor_half_kick(&k->rotor, effects, couple, x + W, dx + W);
+    mct_rotor_split(&k->rotor, x + Q, x + W, dx + Q, dx + W);
+    for (int i = 0; i < 4; i++) {
+        end[i] = x[Q + i] + dx[Q + i];
+    }
+    for (int i = 0; i < 3; i++) {
+        w[i] = x[W + i] + dx[W + i];
+    }
+    couple_at(k, effects, end, couple);
+    mct_rotor_half_kick(&k->rotor, effects, couple, w, dw);
+    for (int i = 0; i < 3; i++) {
+        dx[W + i] += dw[i];
+    }
+}
+
 MCT_INLINE void rk4(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
 {
     (void)order;
     mct_rk4_plain(derivative, k, k->rotor.step, effects, N, x, 0, dx);
 }
 
-/* Weight in body axes turns back as the body turns. */
+/* Weight in principal axes turns back as the body turns. */
 MCT_INLINE void series(const constants_t *k, unsigned effects, int order, const mct_real *x, mct_real *dx)
 {
     mct_rotor_series y;
     mct_vector_series gravity;
-    mct_rotor_series_start(&k->rotor, x + Q, x + W, &y);
+    mct_rotor_series_start(x + Q, x + W, &y);
     if (effects & MCT_GRAVITY) {
         mct_rotate_back(x + Q, k->gravity, gravity[0]);
     }
@@ -188,30 +213,29 @@ MCT_INLINE void series(const constants_t *k, unsigned effects, int order, const 
     mct_rotor_series_sum(&y, order, dx + Q, dx + W);
 }
 
-typedef void (*step_in_body_axes)(const constants_t *k, unsigned effects, int order, const mct_real *x,
-                                  mct_real *dx);
+typedef void (*step_in_principal_axes)(const constants_t *k, unsigned effects, int order, const mct_real *x,
+                                       mct_real *dx);
 
-/* A step in body axes as one in space axes: r' w' - r w = r (dw + (E - 1) w'), r' = r E, w' = w + dw. */
-MCT_INLINE void in_space(step_in_body_axes step, const constants_t *k, unsigned effects, int order,
+/* A step in principal axes as one in space axes: r' w' - r w = r (dw + (E - 1) w'), r' = r E, w' = w + dw. */
+MCT_INLINE void in_space(step_in_principal_axes step, const constants_t *k, unsigned effects, int order,
                          const mct_real *x, mct_real *dx)
 {
-    mct_real body[MCT_MAX_STATES], back[4], e[4], change[3];
-    for (int i = 0; i < 4; i++) {
-        body[Q + i] = x[Q + i];
-    }
-    mct_rotate_back(x + Q, x + W, body + W);
-    step(k, effects, order, body, dx);
-    mct_rotor_renormalise(x + Q, dx + Q);
-    mct_quaternion_inverse(x + Q, back);
-    mct_quaternion_multiply(back, dx + Q, e);
+    mct_real own[MCT_MAX_STATES], own_change[MCT_MAX_STATES], back[4], e[4], change[3];
+    mct_rotor_enter(&k->rotor, x + Q, own + Q);
+    mct_rotate_back(own + Q, x + W, own + W);
+    step(k, effects, order, own, own_change);
+    mct_rotor_renormalise(own + Q, own_change + Q);
+    mct_quaternion_inverse(own + Q, back);
+    mct_quaternion_multiply(back, own_change + Q, e);
     for (int i = 0; i < 3; i++) {
-        body[W + i] += dx[W + i];
+        own[W + i] += own_change[W + i];
     }
-    mct_turn_change(e, body + W, change);
+    mct_turn_change(e, own + W, change);
     for (int i = 0; i < 3; i++) {
-        change[i] += dx[W + i];
+        change[i] += own_change[W + i];
     }
-    mct_rotate(x + Q, change, dx + W);
+    mct_rotate(own + Q, change, dx + W);
+    mct_rotor_leave(&k->rotor, own_change + Q, dx + Q);
 }
 
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
@@ -227,13 +251,14 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const constants_t *k = constants;
     const mct_rotor *rotor = &k->rotor;
     const mct_real *w = x + W;
-    mct_real second[3][3] = {{0}}, body[3], couple[3], wd[3], axis[3], momentum[3], center[3], slope;
+    mct_real second[3][3] = {{0}}, own[4], own_w[3], couple[3], wd[3], axis[3], momentum[3], center[3], slope;
     (void)u;
     *out = (mct_evaluation){0};
-    mct_rotate_back(x + Q, w, body);
-    couple_at(k, effects, x + Q, couple);
-    mct_rotor_accelerate(rotor, effects, couple, body, wd);
-    mct_rotate(x + Q, wd, out->acceleration); /* w x w = 0: the rate is the same vector in either axes */
+    mct_rotor_enter(rotor, x + Q, own);
+    mct_rotate_back(own, w, own_w);
+    couple_at(k, effects, own, couple);
+    mct_rotor_accelerate(rotor, effects, couple, own_w, wd);
+    mct_rotate(own, wd, out->acceleration); /* w x w = 0: the rate is the same vector in either axes */
     for (int n = 0; n < rotor->count; n++) {
         mct_real *at = out->position[n];
         mct_real xdd[3];
@@ -262,7 +287,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         momentum[i] = mct_dot(out->M[i], w);
     }
     mct_cross(w, momentum, out->Cv);
-    mct_rotate(x + Q, k->first_moment, center);
+    mct_rotate(own, k->first_moment, center);
     mct_cross(center, k->gravity, out->tau);
     mct_rotate(x + Q, rotor->idle_axis, axis);
     const mct_real damping = mct_damping(effects, rotor->viscous, 0, w, &slope);
@@ -292,16 +317,15 @@ MCT_KERNELS_2(seed, k->rotor.step.remainder, N, SWITCHES, in_space(seed, k, effe
 MCT_KERNELS_2(euler, k->rotor.step.remainder, N, SWITCHES, in_space(euler, k, effects, 0, x, dx))
 MCT_KERNELS_2(leap, k->rotor.step.remainder, N, SWITCHES, in_space(leap, k, effects, 0, x, dx))
 MCT_KERNELS_2(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, in_space(rk4, k, effects, 0, x, dx))
+MCT_KERNELS_2(split3, k->rotor.step.remainder, N, SWITCHES, in_space(split3, k, effects, 0, x, dx))
 MCT_TAYLOR_KERNELS_2(k->rotor.step.remainder, N, 2, MCT_GRAVITY, MCT_VISCOUS)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
     static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels,
-        [MCT_STEPPER_EULER] = euler_kernels,
-        [MCT_STEPPER_LEAP] = leap_kernels,
-        [MCT_STEPPER_RK4] = rk4_kernels,
-        MCT_TAYLOR_ROWS,
+        [MCT_STEPPER_SEED] = seed_kernels,     [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,     [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_SPLIT3] = split3_kernels, MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

@@ -30,7 +30,9 @@
 
 typedef mct_rigid_body_constants constants_t;
 
-enum { N = 6, Q = 3, V = 7, W = 10 }; /* coordinates; places of quaternion and velocities in the state */
+enum { N = 6 };                                           /* coordinates */
+enum { X_STATE, Q_STATE = 3, V_STATE = 7, W_STATE = 10 }; /* places in the state, */
+enum { Q, W = 4, X = 7, V = 10 }; /* and where steps are taken: what turns comes first */
 
 enum {
     MASS,
@@ -239,19 +241,30 @@ static void add_force(const double *row, const double *center, double space_forc
     }
 }
 
+/* Forces and couples in principal axes. */
 static void prepare_forces(const struct mct_scene *scene, const double *center, constants_t *k)
 {
+    const mct_rotor *rotor = &k->rotor;
     double space_force[3] = {0}, space_lever[3][3] = {{0}}, body_force[3] = {0}, body_couple[3] = {0};
     const mct_list *list = &scene->lists[FORCES];
     for (int32_t i = 0; (scene->effects & MCT_FORCES) && i < list->count; i += FORCE_COLUMNS) {
         add_force(list->values + i, center, space_force, space_lever, body_force, body_couple);
     }
     for (int i = 0; i < 3; i++) {
+        double force = 0, couple = 0, lever[3] = {0};
+        for (int l = 0; l < 3; l++) {
+            const double axis = (double)rotor->axes[i][l];
+            force += axis * body_force[l];
+            couple += axis * body_couple[l];
+            for (int j = 0; j < 3; j++) {
+                lever[j] += axis * space_lever[l][j];
+            }
+        }
         k->space_force[i] = (mct_real)space_force[i];
-        k->body_force[i] = (mct_real)body_force[i];
-        k->body_couple[i] = (mct_real)body_couple[i];
+        k->body_force[i] = (mct_real)force;
+        k->body_couple[i] = (mct_real)couple;
         for (int j = 0; j < 3; j++) {
-            k->space_lever[i][j] = (mct_real)space_lever[i][j];
+            k->space_lever[i][j] = (mct_real)lever[j];
         }
     }
 }
@@ -291,9 +304,9 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return MCT_OK;
 }
 
-/* --- what acts --- */
+/* --- what acts: all in principal axes but for what is called space, and for place and velocity --- */
 
-/* Force in space axes and couple about the centre in body axes, both of the forces alone. */
+/* Force in space axes and couple about the centre, both of the forces alone. */
 MCT_INLINE void forces_at(const constants_t *k, unsigned effects, const mct_real *q, mct_real *force,
                           mct_real *couple)
 {
@@ -304,7 +317,7 @@ MCT_INLINE void forces_at(const constants_t *k, unsigned effects, const mct_real
         }
         return;
     }
-    mct_real lever[3][3]; /* sum p (r'F)', in body axes */
+    mct_real lever[3][3]; /* sum p (r'F)' */
     mct_rotate(q, k->body_force, force);
     for (int i = 0; i < 3; i++) {
         mct_rotate_back(q, k->space_lever[i], lever[i]);
@@ -329,40 +342,58 @@ MCT_INLINE void act(const constants_t *k, unsigned effects, const mct_real *q, m
     }
 }
 
-MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                           mct_real *dx)
+MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_real *y, mct_real u,
+                           mct_real *dy)
 {
     const constants_t *k = constants;
     mct_real couple[3], slope;
     (void)u;
-    act(k, effects, x + Q, dx + V, couple);
-    const mct_real damping = mct_damping(effects, 0, k->inverse_mass * k->drag, x + V, &slope);
+    act(k, effects, y + Q, dy + V, couple);
+    const mct_real damping = mct_damping(effects, 0, k->inverse_mass * k->drag, y + V, &slope);
     for (int i = 0; i < 3; i++) {
-        dx[i] = x[V + i];
+        dy[X + i] = y[V + i];
         if (effects & MCT_DRAG) {
-            dx[V + i] -= damping * x[V + i];
+            dy[V + i] -= damping * y[V + i];
         }
     }
-    mct_quaternion_rate_body(x + Q, x + W, dx + Q);
-    mct_rotor_accelerate(&k->rotor, effects, couple, x + W, dx + W);
+    mct_rotor_turn_rate(y + Q, y + W, dy + Q);
+    mct_rotor_accelerate(&k->rotor, effects, couple, y + W, dy + W);
+}
+
+/* Of attitude and half the angular velocity, without a couple: qd = q (0, w/2). */
+MCT_INLINE void free_turn(const void *constants, unsigned effects, const mct_real *y, mct_real u,
+                          mct_real *dy)
+{
+    const mct_real *coupling = ((const constants_t *)constants)->rotor.coupling;
+    const mct_real *const q = y + Q, *const v = y + W;
+    (void)effects;
+    (void)u;
+    dy[Q] = -(q[1] * v[0] + q[2] * v[1]) - q[3] * v[2];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3;
+        const int l = (i + 2) % 3;
+        dy[Q + 1 + i] = (q[0] * v[i] + q[1 + j] * v[l]) - q[1 + l] * v[j];
+        dy[W + i] = (2 * coupling[i] * v[j]) * v[l];
+    }
 }
 
 /* --- steppers --- */
 
 /* (410), (411), (418), and (419) with a turn. */
-MCT_INLINE void seed(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void seed(const constants_t *k, unsigned effects, int order, const mct_real *y, mct_real *dy)
 {
     const mct_step *step = &k->rotor.step;
     mct_real turn[3];
-    derivative(k, effects, x, 0, dx);
+    (void)order;
+    derivative(k, effects, y, 0, dy);
     for (int i = 0; i < 3; i++) {
-        dx[i] = step->h * (x[V + i] + step->half * dx[V + i]);
-        turn[i] = step->h * (x[W + i] + step->half * dx[W + i]);
-        dx[V + i] *= step->h;
-        dx[W + i] *= step->h;
+        dy[X + i] = step->h * (y[V + i] + step->half * dy[V + i]);
+        turn[i] = step->h * (y[W + i] + step->half * dy[W + i]);
+        dy[V + i] *= step->h;
+        dy[W + i] *= step->h;
     }
-    mct_quaternion_turn_body(x + Q, turn, dx + Q);
-    mct_rotor_renormalise(x + Q, dx + Q);
+    mct_quaternion_turn_body(y + Q, turn, dy + Q);
+    mct_rotor_renormalise(y + Q, dy + Q);
 }
 
 /*
@@ -395,101 +426,204 @@ MCT_INLINE void push(const constants_t *k, unsigned effects, bool is_midpoint, c
 }
 
 /* Momentum and angular momentum by what acts, then the body moves and turns under them. */
-MCT_INLINE void euler(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void euler(const constants_t *k, unsigned effects, int order, const mct_real *y, mct_real *dy)
 {
     const mct_real h = k->rotor.step.h;
     mct_real a[3], couple[3], w[3], e[4], carried[3];
-    act(k, effects, x + Q, a, couple);
-    push(k, effects, false, a, x + V, dx + V);
-    mct_rotor_push(&k->rotor, effects, couple, x + W, dx + W);
+    (void)order;
+    act(k, effects, y + Q, a, couple);
+    push(k, effects, false, a, y + V, dy + V);
+    mct_rotor_push(&k->rotor, effects, couple, y + W, dy + W);
     for (int i = 0; i < 3; i++) {
-        dx[i] = h * (x[V + i] + dx[V + i]);
-        w[i] = x[W + i] + dx[W + i];
+        dy[X + i] = h * (y[V + i] + dy[V + i]);
+        w[i] = y[W + i] + dy[W + i];
     }
     mct_rotor_carry(&k->rotor, w, e, carried);
-    mct_quaternion_multiply(x + Q, e, dx + Q);
+    mct_quaternion_multiply(y + Q, e, dy + Q);
     for (int i = 0; i < 3; i++) {
-        dx[W + i] += carried[i];
+        dy[W + i] += carried[i];
     }
-    mct_rotor_renormalise(x + Q, dx + Q);
+    mct_rotor_renormalise(y + Q, dy + Q);
 }
 
 /* Half a way and half a turn, a kick at the middle, the other half. No force depends on where the body is. */
-MCT_INLINE void leap(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+MCT_INLINE void leap(const constants_t *k, unsigned effects, int order, const mct_real *y, mct_real *dy)
 {
     const mct_step *step = &k->rotor.step;
     mct_real a[3], couple[3], w[3], middle[4], end[4], second[4];
-    mct_rotor_drift(x + Q, x + W, step->half, dx + Q, middle);
+    (void)order;
+    mct_rotor_drift(y + Q, y + W, step->half, dy + Q, middle);
     act(k, effects, middle, a, couple);
-    push(k, effects, true, a, x + V, dx + V);
-    mct_rotor_kick(&k->rotor, effects, couple, x + W, dx + W);
+    push(k, effects, true, a, y + V, dy + V);
+    mct_rotor_kick(&k->rotor, effects, couple, y + W, dy + W);
     for (int i = 0; i < 3; i++) {
-        dx[i] = step->h * x[V + i] + step->half * dx[V + i];
-        w[i] = x[W + i] + dx[W + i];
+        dy[X + i] = step->h * y[V + i] + step->half * dy[V + i];
+        w[i] = y[W + i] + dy[W + i];
     }
     mct_rotor_drift(middle, w, step->half, second, end);
     for (int i = 0; i < 4; i++) {
-        dx[Q + i] += second[i];
+        dy[Q + i] += second[i];
     }
-    mct_rotor_renormalise(x + Q, dx + Q);
+    mct_rotor_renormalise(y + Q, dy + Q);
 }
 
-MCT_INLINE void rk4(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+/* Half a kick, all of the turn and the way, half a kick. No drag, whose kick has no such form. */
+MCT_INLINE void split3(const constants_t *k, unsigned effects, int order, const mct_real *y, mct_real *dy)
 {
-    mct_rk4_plain(derivative, k, k->rotor.step, effects, N, x, u, dx);
-    mct_rotor_renormalise(x + Q, dx + Q);
+    const mct_rotor *rotor = &k->rotor;
+    mct_real a[3], couple[3], w[3], end[4], dw[3];
+    (void)order;
+    act(k, effects, y + Q, a, couple);
+    mct_rotor_half_kick(rotor, effects, couple, y + W, dy + W);
+    mct_rotor_split(rotor, y + Q, y + W, dy + Q, dy + W);
+    for (int i = 0; i < 4; i++) {
+        end[i] = y[Q + i] + dy[Q + i];
+    }
+    for (int i = 0; i < 3; i++) {
+        dy[V + i] = rotor->step.half * a[i];
+        dy[X + i] = rotor->step.h * (y[V + i] + dy[V + i]);
+        w[i] = y[W + i] + dy[W + i];
+    }
+    act(k, effects, end, a, couple);
+    mct_rotor_half_kick(rotor, effects, couple, w, dw);
+    for (int i = 0; i < 3; i++) {
+        dy[V + i] += rotor->step.half * a[i];
+        dy[W + i] += dw[i];
+    }
+    mct_rotor_renormalise(y + Q, dy + Q);
+}
+
+/* The centre under its weight alone: exact. */
+MCT_INLINE void fall(const constants_t *k, unsigned effects, const mct_real *y, mct_real *dy)
+{
+    const mct_step *step = &k->rotor.step;
+    for (int i = 0; i < 3; i++) {
+        dy[V + i] = (effects & MCT_GRAVITY) ? step->h * k->gravity[i] : 0;
+        dy[X + i] = step->h * y[V + i] + step->half * dy[V + i];
+    }
+}
+
+MCT_INLINE void rk4(const constants_t *k, unsigned effects, int order, const mct_real *y, mct_real *dy)
+{
+    (void)order;
+    if (effects & (MCT_FORCES | MCT_DRAG)) {
+        mct_rk4_plain(derivative, k, k->rotor.step, effects, N, y, 0, dy);
+    } else {
+        mct_real half[7];
+        for (int i = 0; i < 7; i++) {
+            half[i] = i < W ? y[i] : MCT_R(0.5) * y[i];
+        }
+        mct_rk4_plain(free_turn, k, k->rotor.step, effects, N - 3, half, 0, dy);
+        for (int i = W; i < X; i++) {
+            dy[i] *= 2;
+        }
+        fall(k, effects, y, dy);
+    }
+    mct_rotor_renormalise(y + Q, dy + Q);
 }
 
 /*
- * The axes of space, seen from the body, turn back as it turns; forces and couples are linear in them. No drag: |v| v has
- * a kink where the body stops.
+ * The axes of space, seen from the body, turn back as it turns; forces and couples are linear in them.
  */
-MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_real *dx)
+MCT_INLINE void forced_series(const constants_t *k, unsigned effects, int order, const mct_real *y,
+                              mct_real *dy)
 {
-    const constants_t *k = constants;
     const mct_real h = k->rotor.step.h;
-    mct_rotor_series y;
+    mct_rotor_series turning;
     mct_vector_series axes[3];
     mct_series v[3] = {{0}}; /* the compiler cannot see that all that is summed is written */
-    (void)u;
-    mct_rotor_series_start(&k->rotor, x + Q, x + W, &y);
+    mct_rotor_series_start(y + Q, y + W, &turning);
     for (int axis = 0; axis < 3; axis++) {
         const mct_real unit[3] = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
-        v[axis][0] = x[V + axis];
-        if (effects & MCT_FORCES) {
-            mct_rotate_back(x + Q, unit, axes[axis][0]);
-        }
+        v[axis][0] = y[V + axis];
+        mct_rotate_back(y + Q, unit, axes[axis][0]);
     }
     for (int n = 0; n < order; n++) {
         const mct_real share = h * mct_series_share(n);
         mct_real couple[3] = {0, 0, 0};
         for (int axis = 0; axis < 3; axis++) {
-            mct_real a = (effects & MCT_GRAVITY) && n == 0 ? k->gravity[axis] : 0;
-            if (effects & MCT_FORCES) {
-                const mct_real lever[3] = {k->space_lever[0][axis], k->space_lever[1][axis],
-                                           k->space_lever[2][axis]};
-                const mct_real constant[2] = {n == 0 ? k->space_force[axis] : 0,
-                                              n == 0 ? k->body_couple[axis] : 0};
-                mct_real part[3];
-                mct_cross(lever, axes[axis][n], part);
-                couple[axis] += constant[1];
-                MCT_UNROLL
-                for (int i = 0; i < 3; i++) {
-                    couple[i] += part[i];
-                }
-                a += k->inverse_mass * (constant[0] + mct_dot(axes[axis][n], k->body_force));
-                mct_rotor_series_turn_back(&k->rotor, &y, n, axes[axis]);
+            const mct_real lever[3] = {k->space_lever[0][axis], k->space_lever[1][axis],
+                                       k->space_lever[2][axis]};
+            const mct_real constant[3] = {n == 0 ? k->space_force[axis] : 0,
+                                          n == 0 ? k->body_couple[axis] : 0,
+                                          (effects & MCT_GRAVITY) && n == 0 ? k->gravity[axis] : 0};
+            mct_real part[3];
+            mct_cross(lever, axes[axis][n], part);
+            couple[axis] += constant[1];
+            MCT_UNROLL
+            for (int i = 0; i < 3; i++) {
+                couple[i] += part[i];
             }
-            v[axis][n + 1] = share * a;
+            v[axis][n + 1] =
+                share *
+                (constant[2] + k->inverse_mass * (constant[0] + mct_dot(axes[axis][n], k->body_force)));
+            mct_rotor_series_turn_back(&k->rotor, &turning, n, axes[axis]);
         }
-        mct_rotor_series_next(&k->rotor, effects, couple, n, &y);
+        mct_rotor_series_next(&k->rotor, effects, couple, n, &turning);
     }
     for (int axis = 0; axis < 3; axis++) {
-        mct_series_increments(v[axis], h, order, &dx[axis], &dx[V + axis]);
+        mct_series_increments(v[axis], h, order, &dy[X + axis], &dy[V + axis]);
     }
-    mct_rotor_series_sum(&y, order, dx + Q, dx + W);
-    mct_rotor_renormalise(x + Q, dx + Q);
+    mct_rotor_series_sum(&turning, order, dy + Q, dy + W);
+    mct_rotor_renormalise(y + Q, dy + Q);
+}
+
+/* No drag: |v| v has a kink where the body stops. */
+MCT_INLINE void series(const constants_t *k, unsigned effects, int order, const mct_real *y, mct_real *dy)
+{
+    if (effects & MCT_FORCES) {
+        forced_series(k, effects, order, y, dy);
+    } else {
+        mct_rotor_free_series(&k->rotor, order, y + Q, y + W, dy + Q, dy + W);
+        fall(k, effects, y, dy);
+    }
+}
+
+typedef void (*step_in_principal_axes)(const constants_t *k, unsigned effects, int order, const mct_real *y,
+                                       mct_real *dy);
+
+/* A state in principal axes, */
+MCT_INLINE void enter(const mct_rotor *rotor, const mct_real *x, mct_real *y)
+{
+    mct_rotor_enter(rotor, x + Q_STATE, y + Q);
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        y[W + i] = rotor->is_turned ? mct_dot(rotor->axes[i], x + W_STATE) : x[W_STATE + i];
+        y[X + i] = x[X_STATE + i];
+        y[V + i] = x[V_STATE + i];
+    }
+}
+
+/* and its increment on the way back. */
+MCT_INLINE void leave(const mct_rotor *rotor, const mct_real *dy, mct_real *dx)
+{
+    mct_rotor_leave(rotor, dy + Q, dx + Q_STATE);
+    MCT_UNROLL
+    for (int i = 0; i < 3; i++) {
+        dx[X_STATE + i] = dy[X + i];
+        dx[V_STATE + i] = dy[V + i];
+        dx[W_STATE + i] = dy[W + i];
+    }
+    if (rotor->is_turned) {
+        mct_apply_back(rotor->axes, dy + W, dx + W_STATE);
+    }
+}
+
+/* A step of a state. */
+MCT_INLINE void whole(step_in_principal_axes step, const constants_t *k, unsigned effects, int order,
+                      const mct_real *x, mct_real *dx)
+{
+    mct_real y[MCT_MAX_STATES], dy[MCT_MAX_STATES];
+    enter(&k->rotor, x, y);
+    step(k, effects, order, y, dy);
+    leave(&k->rotor, dy, dx);
+}
+
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    (void)u;
+    whole(series, constants, effects, order, x, dx);
 }
 
 /* --- all that the equation says --- */
@@ -500,9 +634,9 @@ static void evaluate_particles(const constants_t *k, const mct_real *x, mct_eval
     for (int n = 0; n < rotor->count; n++) {
         mct_real turning[3], xdd[3];
         out->mass[n] = rotor->mass[n];
-        mct_rotate(x + Q, rotor->arm[n], out->position[n]);
-        mct_turning_acceleration(x + W, out->acceleration + 3, rotor->arm[n], turning);
-        mct_rotate(x + Q, turning, xdd);
+        mct_rotate(x + Q_STATE, rotor->arm[n], out->position[n]);
+        mct_turning_acceleration(x + W_STATE, out->acceleration + 3, rotor->arm[n], turning);
+        mct_rotate(x + Q_STATE, turning, xdd);
         for (int i = 0; i < 3; i++) {
             out->position[n][i] += x[i];
             out->force[n][i] = rotor->mass[n] * k->gravity[i];
@@ -517,14 +651,18 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const constants_t *k = constants;
     const mct_rotor *rotor = &k->rotor;
     const mct_real mass = rotor->total_mass;
-    const mct_real *v = x + V;
-    const mct_real *w = x + W;
-    mct_real dx[MCT_MAX_STATES], force[3], couple[3], momentum[3], second[3], C[9], slope;
+    const mct_real *v = x + V_STATE;
+    const mct_real *w = x + W_STATE;
+    mct_real y[MCT_MAX_STATES], dy[MCT_MAX_STATES], dx[MCT_MAX_STATES], force[3], own_couple[3], couple[3];
+    mct_real momentum[3], second[3], C[9], slope;
     (void)u;
     *out = (mct_evaluation){0};
-    derivative(k, effects, x, 0, dx);
-    memcpy(out->acceleration, dx + V, N * sizeof dx[0]);
-    forces_at(k, effects, x + Q, force, couple);
+    enter(rotor, x, y);
+    derivative(k, effects, y, 0, dy);
+    leave(rotor, dy, dx);
+    memcpy(out->acceleration, dx + V_STATE, N * sizeof dx[0]);
+    forces_at(k, effects, y + Q, force, own_couple);
+    mct_apply_back(rotor->axes, own_couple, couple);
     mct_apply(rotor->inertia, w, momentum);
     const mct_real half_trace =
         MCT_R(0.5) * (rotor->inertia[0][0] + rotor->inertia[1][1] + rotor->inertia[2][2]);
@@ -556,7 +694,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
 {
     const constants_t *k = constants;
     (void)time;
-    mct_rotor_place(&k->rotor, q + Q, position);
+    mct_rotor_place(&k->rotor, q + Q_STATE, position);
     for (int n = 0; n < k->rotor.count; n++) {
         for (int i = 0; i < 3; i++) {
             position[n][i] = mct_hyperdual_add(position[n][i], q[i]);
@@ -568,20 +706,21 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
 #define SWITCHES MCT_GRAVITY, MCT_FORCES, MCT_DRAG
 static const uint32_t switches[] = {SWITCHES, 0};
 
-MCT_KERNELS_3(seed, k->rotor.step.remainder, N, SWITCHES, seed(k, effects, x, dx))
-MCT_KERNELS_3(euler, k->rotor.step.remainder, N, SWITCHES, euler(k, effects, x, dx))
-MCT_KERNELS_3(leap, k->rotor.step.remainder, N, SWITCHES, leap(k, effects, x, dx))
-MCT_KERNELS_3(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, rk4(k, effects, x, u, dx))
+MCT_KERNELS_3(seed, k->rotor.step.remainder, N, SWITCHES, whole(seed, k, effects, 0, x, dx))
+MCT_KERNELS_3(euler, k->rotor.step.remainder, N, SWITCHES, whole(euler, k, effects, 0, x, dx))
+MCT_KERNELS_3(leap, k->rotor.step.remainder, N, SWITCHES, whole(leap, k, effects, 0, x, dx))
+MCT_KERNELS_3(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, whole(rk4, k, effects, 0, x, dx))
+MCT_SWITCH_INCREMENTS(split3, whole(split3, k, effects, 0, x, dx))
+MCT_QUAD(split3, k->rotor.step.remainder, N, s, 0, MCT_GRAVITY, MCT_FORCES)
+static const mct_kernel split3_kernels[8] = {MCT_QUAD_NAMES(split3, s)};
 MCT_TAYLOR_KERNELS_2(k->rotor.step.remainder, N, 3, MCT_GRAVITY, MCT_FORCES)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
     static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels,
-        [MCT_STEPPER_EULER] = euler_kernels,
-        [MCT_STEPPER_LEAP] = leap_kernels,
-        [MCT_STEPPER_RK4] = rk4_kernels,
-        MCT_TAYLOR_ROWS,
+        [MCT_STEPPER_SEED] = seed_kernels,     [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,     [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_SPLIT3] = split3_kernels, MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

@@ -11,10 +11,34 @@ const mct_field mct_rotor_columns[MCT_ROTOR_COLUMNS] = {
     MCT_QUANTITY("b3", "m", -1e3, 1e3, 0, ""),
 };
 
-/* Inertia, its pseudo-inverse, and the axis that has none. */
+/*
+ * The axis that `split3` does without: where the product of what the other two have beyond is least, for so is the error.
+ * Nothing turns about an axis without inertia.
+ */
+static void prepare_split(const double *moment, double largest, mct_rotor *rotor)
+{
+    double least = -1;
+    for (int axis = 0; axis < 3; axis++) {
+        double excess[3], product = 1;
+        for (int i = 0; i < 3 && moment[axis] > 0; i++) {
+            excess[i] = moment[i] == 0 ? 0 : largest / moment[i] - largest / moment[axis];
+            product *= i == axis ? 1 : mct_abs(excess[i]);
+        }
+        if (moment[axis] > 0 && (least < 0 || product < least)) {
+            least = product;
+            rotor->round = (mct_real)(largest / moment[axis]);
+            for (int i = 0; i < 3; i++) {
+                rotor->excess[i] = (mct_real)excess[i];
+            }
+        }
+    }
+}
+
+/* Inertia, its principal axes and moments, and the axis that has none. */
 static mct_status prepare_inertia(const double *inertia, mct_rotor *rotor, double *moments)
 {
-    double inverse[9] = {0}, shape[9], axes[9], largest = 0;
+    double axes[9], moment[3], largest = 0;
+    mct_real matrix[9];
     const mct_status status = mct_principal_axes(inertia, moments, axes);
     if (status != MCT_OK) {
         return status;
@@ -26,27 +50,25 @@ static mct_status prepare_inertia(const double *inertia, mct_rotor *rotor, doubl
         return MCT_ERROR_SINGULAR;
     }
     for (int i = 0; i < 9; i++) {
-        shape[i] = inertia[i] / largest;
+        rotor->inertia[i / 3][i % 3] = (mct_real)inertia[i];
+        rotor->axes[i % 3][i / 3] = matrix[i] = (mct_real)axes[i];
+        rotor->is_turned |= axes[i] != (i % 4 == 0 ? 1 : 0);
     }
-    for (int axis = 0; axis < 3; axis++) {
-        const bool is_idle = moments[axis] < MCT_LEAST_MOMENT * largest;
-        for (int i = 0; i < 3; i++) {
-            if (is_idle) {
-                rotor->idle_axis[i] = (mct_real)axes[3 * i + axis];
-            }
-            for (int j = 0; j < 3; j++) {
-                const double outer = axes[3 * i + axis] * axes[3 * j + axis];
-                *(is_idle ? &shape[3 * i + j] : &inverse[3 * i + j]) +=
-                    is_idle ? outer : outer / moments[axis];
-            }
+    mct_quaternion_of_matrix(matrix, rotor->turn);
+    for (int i = 0; i < 3; i++) {
+        const bool is_idle = moments[i] < MCT_LEAST_MOMENT * largest;
+        moment[i] = is_idle ? 0 : moments[i];
+        rotor->moment[i] = (mct_real)(moment[i] / largest);
+        rotor->inverse[i] = (mct_real)(is_idle ? 0 : 1 / moment[i]);
+        for (int j = 0; j < 3 && is_idle; j++) {
+            rotor->idle_axis[j] = rotor->axes[i][j];
         }
     }
-    rotor->inverse_size = (mct_real)(1 / largest);
-    for (int i = 0; i < 9; i++) {
-        rotor->inertia[i / 3][i % 3] = (mct_real)inertia[i];
-        rotor->inverse[i / 3][i % 3] = (mct_real)inverse[i];
-        rotor->shape[i / 3][i % 3] = (mct_real)shape[i];
+    for (int i = 0; i < 3; i++) {
+        const double difference = moment[(i + 1) % 3] - moment[(i + 2) % 3];
+        rotor->coupling[i] = (mct_real)(moment[i] == 0 ? 0 : difference / moment[i]);
     }
+    prepare_split(moment, largest, rotor);
     return MCT_OK;
 }
 
