@@ -13,6 +13,14 @@
 
 #define MCT_STATE_BOUND MCT_R(1e9) /**< a state beyond this, in SI units, has blown up */
 
+/** A step that goes over several ticks: mct_scene.stride. */
+typedef struct {
+    int32_t ticks; /**< of one step; 1: each tick is stepped */
+    int32_t gone;  /**< ticks of it that have gone by */
+    mct_state start;
+    mct_motion motion;
+} mct_stride;
+
 typedef struct {
     const mct_system *system;
     mct_kernel kernel;
@@ -27,6 +35,7 @@ typedef struct {
     uint64_t rejected_inputs; /**< inputs that were not finite: the last valid one was held */
     /** Ticks whose result was not finite or beyond MCT_STATE_BOUND: the state before was kept. */
     uint64_t diverged_ticks;
+    mct_stride stride;
     mct_constants constants;
 } mct_plant;
 
@@ -41,7 +50,9 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
 /**
  * Advances by one tick under a held input. An input that is not finite is refused and the last one held; a
  * result that is not finite or has blown up is refused and the state kept. Both are counted. Cost: the
- * kernel, and some 5 ns. Not thread-safe per plant.
+ * kernel, and some 5 ns. Not thread-safe per plant. With a stride, a step is made where one has gone by or the input has
+ * changed; the ticks between are read off its series, at a third of a step's cost. Whoever writes the state itself then
+ * sets stride.gone to 0.
  */
 void mct_plant_step(mct_plant *plant, mct_real input);
 

@@ -51,7 +51,8 @@ typedef struct mct_scene {
     int32_t stepper;   /**< index into mct_steppers */
     int32_t automatic; /**< 1: stepper = "auto"; the most accurate one stands in until a host has chosen */
     int32_t precision; /**< MCT_PRECISION_... */
-    int32_t substeps;
+    int32_t substeps;  /**< steps per tick */
+    int32_t stride;    /**< ticks per step; this or substeps is 1 */
     int32_t realtime;
     double dt;        /**< the tick [s] */
     double duration;  /**< [s] */
@@ -110,6 +111,12 @@ typedef struct mct_scene {
     char lcm[MCT_MAX_TEXT];
     char log[MCT_MAX_TEXT];
 } mct_scene;
+
+/** Length of a scene's steps [s]. */
+static inline double mct_scene_step(const mct_scene *scene)
+{
+    return scene->dt * scene->stride / scene->substeps;
+}
 
 /** A table of a scene with fixed keys, `offset` of each field saying where it goes. */
 typedef struct {

@@ -106,6 +106,15 @@ typedef struct {
  */
 typedef void (*mct_kernel)(const void *constants, mct_state *state, mct_real input, int32_t steps);
 
+#define MCT_MOTION_STATES 5  /**< of a system whose motion can be had as a series */
+#define MCT_MOTION_TERMS  13 /**< of order 13 in coordinates, 12 in the other states */
+
+/** The motion over one step: after the part f of it, state i has changed by the sum of term[i][n] f^(n+1). */
+typedef struct {
+    mct_real term[MCT_MOTION_STATES][MCT_MOTION_TERMS];
+    mct_real remainder; /**< what rounding the step's length leaves out of each change, relative to it */
+} mct_motion;
+
 /** A coordinate: what scenes and telemetry call it, and how an encoder sees it. */
 typedef struct {
     mct_field position;
@@ -197,6 +206,9 @@ typedef struct mct_system {
                   mct_hyperdual (*position)[3]);
     /** Kernels by stepper and kernel mask; NULL where the pair does not fit. */
     mct_kernel (*kernel)(int stepper, uint32_t effects);
+    /** Writes the motion over one step of `taylor12`; NULL where its series is not at hand. For scene.stride. */
+    void (*motion)(const void *constants, uint32_t effects, const mct_state *state, mct_real input,
+                   mct_motion *motion);
 } mct_system;
 
 #define MCT_SYSTEM_COUNT 15

@@ -115,18 +115,50 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
         mct_message_add(why, plant->system->name);
         return MCT_ERROR_UNSUITED;
     }
+    if (scene->stride > 1 && plant->system->motion == NULL) {
+        mct_message_add(why, "scene.stride: found a step over several ticks, for which ");
+        mct_message_add(why, plant->system->name);
+        mct_message_add(why, " has no series to hand");
+        return MCT_ERROR_UNSUITED;
+    }
     const bool bounded = (plant->effects & MCT_SATURATION) && (plant->effects & MCT_MOTOR);
     plant->substeps = scene->substeps;
+    plant->stride.ticks = scene->stride;
     plant->bound =
         bounded ? (mct_real)scene->parameters[plant->system->actuation->supply_parameter] : MCT_REAL_MAX;
     plant->states = mct_state_count(scene);
     plant->entries = plant->states + (plant->system->is_timed ? 1 : 0);
     mct_state_set(plant->system, plant->states, scene->initial, &plant->state);
-    return plant->system->prepare(scene, scene->dt / scene->substeps, &plant->constants, why);
+    return plant->system->prepare(scene, mct_scene_step(scene), &plant->constants, why);
+}
+
+/* One tick further along the step that the stride is in, or on a new one. */
+static void advance_stride(mct_plant *plant, bool is_new)
+{
+    mct_stride *stride = &plant->stride;
+    const mct_motion *motion = &stride->motion;
+    if (is_new || stride->gone == 0 || stride->gone == stride->ticks) {
+        stride->start = plant->state;
+        stride->gone = 0;
+        plant->system->motion(&plant->constants, plant->effects, &stride->start, plant->input,
+                              &stride->motion);
+    }
+    stride->gone++;
+    const mct_real part = (mct_real)stride->gone / (mct_real)stride->ticks;
+    plant->state = stride->start;
+    for (int i = 0; i < plant->states; i++) {
+        mct_real change = 0;
+        for (int n = MCT_MOTION_TERMS - 1; n >= 0; n--) {
+            change = (change + motion->term[i][n]) * part;
+        }
+        plant->state.c[i] += motion->remainder * change;
+        mct_add_compensated(&plant->state.x[i], &plant->state.c[i], change);
+    }
 }
 
 void mct_plant_step(mct_plant *plant, mct_real input)
 {
+    const mct_real before = plant->input;
     if (mct_finite(input)) {
         plant->input = mct_clamp(input, plant->bound);
     } else {
@@ -138,7 +170,11 @@ void mct_plant_step(mct_plant *plant, mct_real input)
         x[i] = plant->state.x[i];
         c[i] = plant->state.c[i];
     }
-    plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
+    if (plant->stride.ticks > 1) {
+        advance_stride(plant, plant->input != before);
+    } else {
+        plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
+    }
     if (is_sane(&plant->state, plant->entries)) {
         wrap_angles(plant);
     } else {
@@ -146,6 +182,7 @@ void mct_plant_step(mct_plant *plant, mct_real input)
             plant->state.x[i] = x[i];
             plant->state.c[i] = c[i];
         }
+        plant->stride.gone = 0;
         plant->diverged_ticks++;
     }
     plant->tick++;

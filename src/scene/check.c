@@ -343,12 +343,16 @@ static mct_status examine_stepper(const mct_scene *scene, const mct_system *syst
     mct_message_add(sentence, ", which follows an inductive motor up to h R/L = ");
     mct_message_add_number(sentence, limit);
     mct_message_add(sentence, "; at h = ");
-    mct_message_add_number(sentence, scene->dt / scene->substeps);
+    mct_message_add_number(sentence, mct_scene_step(scene));
     mct_message_add(sentence, " s it is ");
     mct_message_add_number(sentence, stiffness);
     mct_message_add(sentence, "; allowed ");
     add_suitable_steppers(scene, sentence);
-    for (int i = 0; i < mct_key_count(0, system); i++) {
+    if (scene->stride > 1) {
+        mct_message_add(sentence, ", or a scene.stride below ");
+        mct_message_add_integer(sentence, (long long)(scene->stride * (limit / stiffness)) + 1);
+    }
+    for (int i = 0; i < mct_key_count(0, system) && scene->stride == 1; i++) {
         const mct_scene_key key = mct_key_at(0, system, i);
         if (mct_text_equal(key.field.name, "substeps") && substeps < key.field.maximum) {
             mct_message_add(sentence, ", or scene.substeps from ");
@@ -361,6 +365,38 @@ static mct_status examine_stepper(const mct_scene *scene, const mct_system *syst
         }
     }
     return MCT_ERROR_UNSUITED;
+}
+
+/* Ticks within a step are read off its series, which not every stepper has. */
+static mct_status examine_stride(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                                 mct_message *sentence)
+{
+    if (scene->stride == 1) {
+        return MCT_OK;
+    }
+    blame->table = "scene";
+    blame->key = "stride";
+    mct_message_add(sentence, "found ");
+    mct_message_add_integer(sentence, scene->stride);
+    if (scene->substeps > 1) {
+        mct_message_add(sentence, " beside scene.substeps = ");
+        mct_message_add_integer(sentence, scene->substeps);
+        mct_message_add(sentence, "; allowed either above 1");
+        return MCT_ERROR_UNSUITED;
+    }
+    if (scene->stepper != MCT_STEPPER_TAYLOR12) {
+        mct_message_add(sentence, " with stepper ");
+        mct_message_add(sentence, mct_steppers[scene->stepper].name);
+        mct_message_add(sentence, ", which has no series to read ticks off; allowed 1, or stepper taylor12");
+        return MCT_ERROR_UNSUITED;
+    }
+    if (system->motion == NULL) {
+        mct_message_add(sentence, ", for which ");
+        mct_message_add(sentence, system->name);
+        mct_message_add(sentence, " has no series to hand; allowed 1");
+        return MCT_ERROR_UNSUITED;
+    }
+    return MCT_OK;
 }
 
 static mct_status examine_controller(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
@@ -493,7 +529,7 @@ static mct_status examine_system(const mct_scene *scene, const mct_system *syste
     mct_constants constants;
     mct_message why;
     mct_message_clear(&why);
-    if (system->prepare(scene, scene->dt / scene->substeps, &constants, &why) == MCT_OK) {
+    if (system->prepare(scene, mct_scene_step(scene), &constants, &why) == MCT_OK) {
         return MCT_OK;
     }
     blame->table = "parameters";
@@ -532,6 +568,7 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     mct_status status = examine_keys(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_effects(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_stepper(scene, system, blame, sentence);
+    status = status != MCT_OK ? status : examine_stride(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_controller(scene, blame, sentence);
     status = status != MCT_OK ? status : examine_input(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_attitude(scene, system, blame, sentence);

@@ -57,6 +57,9 @@ static const mct_field scene_fields[] = {
          "of stepper = auto: largest error at any tick, relative to a state's largest value or to 1"),
     REAL("dt", "s", 1e-7, 1, 0.001, dt, "the tick: one reading of the sensors, one command, one record"),
     INTEGER("substeps", "", 1, 1000, 1, substeps, "steps of the simulation within a tick"),
+    INTEGER("stride", "", 1, 1000, 1, stride,
+            "ticks that one step of taylor12 may go while the input stays the same: those between are read "
+            "off its series"),
     REAL("duration", "s", 0, LONGEST, 10, duration, "a whole number of ticks"),
     CHOICE("precision", precisions, MCT_PRECISION_DOUBLE, precision,
            "scalar of the simulation and the controller"),
@@ -320,8 +323,7 @@ double mct_motor_stiffness(const mct_scene *scene)
     if (!(mct_scene_effects(scene) & MCT_MOTOR_INDUCTIVE)) {
         return 0;
     }
-    const double h = scene->dt / scene->substeps;
-    return h * scene->parameters[system->actuation->resistance_parameter] /
+    return mct_scene_step(scene) * scene->parameters[system->actuation->resistance_parameter] /
            scene->parameters[system->actuation->inductance_parameter];
 }
 

@@ -13,7 +13,7 @@
 #ifndef MCT_STEPPERS_TAYLOR_H
 #define MCT_STEPPERS_TAYLOR_H
 
-#include "mctau/real.h"
+#include "advance.h"
 
 #define MCT_TAYLOR_TERMS 13 /* of order 12 */
 
@@ -114,6 +114,48 @@ MCT_INLINE void mct_series_increments(const mct_real *rate, mct_real h, int orde
         mct_series_share(order) * rate[order] + mct_series_share(order - 1) * rate[order - 1];
     *coordinate = h * ((rate[0] + way) + newest);
     *of_rate = mct_series_sum(rate, order);
+}
+
+/*
+ * A system whose states are n coordinates, their rates and perhaps a current has one function that writes the series of
+ * rates and current. It makes the increments of a step and, at the highest order, the motion within one.
+ */
+typedef void (*mct_series_of)(const void *constants, unsigned effects, int order, const mct_real *x,
+                              mct_real u, mct_series *rates);
+
+MCT_INLINE void mct_taylor(mct_series_of series, const void *constants, mct_real h, unsigned effects,
+                           int order, int n, const mct_real *x, mct_real u, mct_real *dx)
+{
+    mct_series rates[MCT_MAX_ENCODERS + 1];
+    series(constants, effects, order, x, u, rates);
+    MCT_UNROLL
+    for (int i = 0; i < n; i++) {
+        mct_series_increments(rates[i], h, order, &dx[i], &dx[n + i]);
+    }
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        dx[2 * n] = mct_series_sum(rates[n], order);
+    }
+}
+
+MCT_INLINE void mct_taylor_motion(mct_series_of series, const void *constants, mct_step step,
+                                  unsigned effects, int n, const mct_state *state, mct_real u,
+                                  mct_motion *motion)
+{
+    enum { ORDER = MCT_TAYLOR_TERMS - 1 };
+    mct_series rates[MCT_MAX_ENCODERS + 1];
+    series(constants, effects, ORDER, state->x, u, rates);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k <= ORDER; k++) {
+            motion->term[i][k] = step.h * mct_series_share(k) * rates[i][k];
+        }
+    }
+    for (int i = n; i < mct_entries(effects, n); i++) {
+        for (int k = 0; k < ORDER; k++) {
+            motion->term[i][k] = rates[i - n][k + 1];
+        }
+        motion->term[i][ORDER] = 0;
+    }
+    motion->remainder = step.remainder;
 }
 
 #endif

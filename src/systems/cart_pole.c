@@ -289,16 +289,19 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
  * Of Lagrange's equations, by terms: with c w for cos th thd, the first one is (m1 + m2) pd + m2 l c w = integral of
  * f - k1 pd, which spares the centrifugal term; c w and s w are the rates of sine and cosine, too.
  */
-MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_real *dx)
+MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_series *rates)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
-    mct_series s, c, v, w, current, a; /* a: accelerations of the cart, times h */
+    mct_real *const v = rates[0], *const w = rates[1], *const current = rates[2];
+    mct_series s, c, a; /* a: accelerations of the cart, times h */
     mct_sincos(x[1], &s[0], &c[0]);
     v[0] = x[2];
     w[0] = x[3];
-    current[0] = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        current[0] = x[4];
+    }
     mct_real to_v[2], to_w[2]; /* by a unit of impulse on cart and pole */
     solve(k, MCT_GRAVITY, s[0], c[0], 1, 0, to_v);
     solve(k, MCT_GRAVITY, s[0], c[0], 0, 1, to_w);
@@ -341,11 +344,20 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
             current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[n], current[n]);
         }
     }
-    mct_series_increments(v, h, order, &dx[0], &dx[2]);
-    mct_series_increments(w, h, order, &dx[1], &dx[3]);
-    if (effects & MCT_MOTOR_INDUCTIVE) {
-        dx[4] = mct_series_sum(current, order);
-    }
+}
+
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const constants_t *k = constants;
+    mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
+}
+
+static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                   mct_motion *out)
+{
+    const constants_t *k = constants;
+    mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
 }
 
 static mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
@@ -526,4 +538,5 @@ const mct_system mct_cart_pole = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
+    .motion = motion,
 };

@@ -102,4 +102,5 @@ const mct_system mct_fixed_axis = {
     .evaluate = mct_hinged_particles_evaluate,
     .place = mct_hinged_particles_place,
     .kernel = mct_hinged_particles_kernel,
+    .motion = mct_hinged_particles_motion,
 };

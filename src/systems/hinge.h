@@ -13,6 +13,7 @@
 #include "../steppers/euler.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
+#include "../steppers/rkn6.h"
 #include "../steppers/seed.h"
 #include "../steppers/taylor.h"
 #include "kernels.h"
@@ -103,14 +104,15 @@ MCT_INLINE void mct_hinge_kick_symmetric(const void *constants, unsigned effects
     mct_hinge_kick(constants, effects, x, u, MCT_R(0.5), dx);
 }
 
-/* Of kernels.h, without drag: w |w| has a kink where the body turns back. */
-MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_real *dx)
+/* The rate's, without drag: w |w| has a kink where the body turns back. */
+MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int order, const mct_real *x,
+                                 mct_real u, mct_series *rates)
 {
     const mct_hinge *k = constants;
     const mct_real h = k->step.h;
     const mct_real turn = h * k->inverse_inertia;
-    mct_series s, c, w;
+    mct_real *const w = rates[0];
+    mct_series s = {0}, c = {0}; /* for compilers that do not see that the effects decide both times */
     if (effects & MCT_GRAVITY) {
         mct_sincos(x[0], &s[0], &c[0]);
     }
@@ -133,7 +135,45 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
             mct_series_sincos(w, h, n, s, c);
         }
     }
-    mct_series_increments(w, h, order, &dx[0], &dx[1]);
+}
+
+/* Of kernels.h. */
+MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_real *dx)
+{
+    const mct_hinge *k = constants;
+    mct_taylor(mct_hinge_series, constants, k->step.h, effects, order, 1, x, u, dx);
+}
+
+/* An angle whose sine and cosine are known: stages of a step lie near it. */
+typedef struct {
+    const mct_hinge *k;
+    mct_real angle, s, c;
+} mct_hinge_start;
+
+MCT_INLINE void mct_hinge_acceleration(const void *self, unsigned effects, const mct_real *x, mct_real u,
+                                       mct_real *a)
+{
+    const mct_hinge_start *start = self;
+    mct_real s, c;
+    mct_sincos_near(x[0], x[0] - start->angle, start->s, start->c, &s, &c);
+    a[0] = start->k->inverse_inertia * mct_hinge_torque(start->k, effects, s, c, 0, u);
+}
+
+MCT_INLINE void mct_hinge_rkn6(const mct_hinge *k, unsigned effects, const mct_real *x, mct_real u,
+                               mct_real *dx)
+{
+    mct_hinge_start start = {k, x[0], 0, 1};
+    mct_sincos(x[0], &start.s, &start.c);
+    mct_rkn6(mct_hinge_acceleration, &start, k->step, effects, 1, x, u, dx);
+}
+
+/* Of the descriptor. */
+static void mct_hinge_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                             mct_motion *motion)
+{
+    const mct_hinge *k = constants;
+    mct_taylor_motion(mct_hinge_series, constants, k->step, effects | MCT_ALWAYS, 1, state, u, motion);
 }
 
 /* Of kernels.h. */
@@ -174,15 +214,15 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
     KERNELS(rk4, k->hinge.step.sixth_remainder, 1, __VA_ARGS__,                          \
             mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx)) \
     MCT_TAYLOR_KERNELS_2(k->hinge.step.remainder, 1, 4, MCT_GRAVITY, MCT_VISCOUS)        \
+    MCT_SMOOTH_KERNELS_1(rkn6, k->hinge.step.remainder, 1, 4, MCT_GRAVITY,               \
+                         mct_hinge_rkn6(&k->hinge, effects, x, u, dx))                   \
     static mct_kernel kernel(int stepper, uint32_t effects)                              \
     {                                                                                    \
         static const uint32_t switches[] = {__VA_ARGS__, 0};                             \
         static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {                    \
-            [MCT_STEPPER_SEED] = seed_kernels,                                           \
-            [MCT_STEPPER_EULER] = euler_kernels,                                         \
-            [MCT_STEPPER_LEAP] = leap_kernels,                                           \
-            [MCT_STEPPER_RK4] = rk4_kernels,                                             \
-            MCT_TAYLOR_ROWS,                                                             \
+            [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,      \
+            [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,          \
+            [MCT_STEPPER_RKN6] = rkn6_kernels, MCT_TAYLOR_ROWS,                          \
         };                                                                               \
         return mct_switched_kernel_of(kernels, switches, stepper, effects);              \
     }

@@ -138,3 +138,9 @@ mct_kernel mct_hinged_particles_kernel(int stepper, uint32_t effects)
 {
     return kernel(stepper, effects);
 }
+
+void mct_hinged_particles_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                                 mct_motion *motion)
+{
+    mct_hinge_motion(constants, effects, state, u, motion);
+}

@@ -180,7 +180,11 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
 #define MCT_SMOOTH_KERNEL_NAMES(stepper, motor) \
     stepper##_##motor##_0, stepper##_##motor##_1, stepper##_##motor##_2, stepper##_##motor##_3
 
-/* or of `count` switches, of which the first two or three are smooth. */
+/* or of `count` switches, of which the first, the first two or three suit. */
+#define MCT_SMOOTH_KERNELS_1(stepper, remainder, n, count, A, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                            \
+    MCT_PAIR(stepper, remainder, n, s, 0, A)                              \
+    static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_PAIR_NAMES(stepper, s)};
 #define MCT_SMOOTH_KERNELS_2(stepper, remainder, n, count, A, B, expression) \
     MCT_SWITCH_INCREMENTS(stepper, expression)                               \
     MCT_QUAD(stepper, remainder, n, s, 0, A, B)                              \

@@ -77,4 +77,5 @@ const mct_system mct_particle_pendulum = {
     .evaluate = mct_hinged_particles_evaluate,
     .place = mct_hinged_particles_place,
     .kernel = mct_hinged_particles_kernel,
+    .motion = mct_hinged_particles_motion,
 };

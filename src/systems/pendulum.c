@@ -109,4 +109,5 @@ const mct_system mct_pendulum = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
+    .motion = mct_hinge_motion,
 };

@@ -144,4 +144,5 @@ const mct_system mct_solid_pendulum = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
+    .motion = mct_hinge_motion,
 };

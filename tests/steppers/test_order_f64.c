@@ -245,6 +245,25 @@ static void test_every_stepper_converges_with_its_order_on_every_smooth_system_a
     }
 }
 
+static void test_a_stepper_for_forces_of_position_converges_with_its_order_without_friction(void)
+{
+    int judged = 0;
+    for (int i = 0; i < SPECIALS; i++) {
+        mct_scene scene = special_scene(&specials[i], 0);
+        const uint32_t with_friction = scene.effects;
+        journey self;
+        scene.effects &= ~(uint32_t)MCT_VISCOUS;
+        prepare_journey(&self, &scene, specials[i].input, 4 * DURATION);
+        FOR_EACH_STEPPER (stepper, scene.system, scene.effects) {
+            if (mct_systems[scene.system]->kernel(stepper, with_friction) == NULL) {
+                check_convergence(&self, stepper);
+                judged++;
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(judged >= 4);
+}
+
 /* Taylor's method is judged wherever it is: no system has it that is not in the table. */
 static void test_every_system_with_a_series_is_judged(void)
 {
@@ -322,6 +341,7 @@ int main(void)
     }
     UNITY_BEGIN();
     RUN_TEST(test_every_stepper_converges_with_its_order_on_every_smooth_system_and_motor);
+    RUN_TEST(test_a_stepper_for_forces_of_position_converges_with_its_order_without_friction);
     RUN_TEST(test_every_system_with_a_series_is_judged);
     RUN_TEST(test_leap_converges_with_order_2_and_is_stable_on_a_cart_pole_with_a_stiff_motor);
     RUN_TEST(test_expo_keeps_order_4_where_the_motor_is_a_thousand_times_faster_than_the_step);
