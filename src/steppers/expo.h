@@ -24,11 +24,11 @@
 #include "mctau/sincos.h"
 
 /*
- * Hides from gcc that a pointer is the same in every step. Else it copies all constants to its own stack
- * before the first one, which takes a third of a step where a tick has one step.
+ * Hides from gcc that a pointer is the same in every step. Else it copies all constants to its own stack before the
+ * first one, which may take a third of a step where a tick has one.
  */
 #if defined __GNUC__
-#define MCT_EXPO_RELOAD(pointer) __asm__ volatile("" : "+r"(pointer))
+#define MCT_EXPO_RELOAD(pointer) __asm__("" : "+r"(pointer))
 #else
 #define MCT_EXPO_RELOAD(pointer) (void)(pointer)
 #endif

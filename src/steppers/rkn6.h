@@ -10,16 +10,17 @@
 #include "advance.h"
 
 /* `acceleration` writes that of the coordinates x[0..n-1], under input u. */
-MCT_INLINE void mct_rkn6(mct_derivative acceleration, const void *self, mct_step step, unsigned effects, int n,
-                         const mct_real *x, mct_real u, mct_real *dx)
+MCT_INLINE void mct_rkn6(mct_derivative acceleration, const void *self, mct_step step, unsigned effects,
+                         int n, const mct_real *x, mct_real u, mct_real *dx)
 {
     enum { STAGES = 5 };
     static const mct_real part[STAGES] = {0, MCT_R(0.25), MCT_R(0.5), MCT_R(0.75), 1};
-    static const mct_real within[STAGES][STAGES - 1] = {{0},
-                                                        {MCT_R(1.0 / 32)},
-                                                        {MCT_R(-1.0 / 24), MCT_R(1.0 / 6)},
-                                                        {MCT_R(3.0 / 32), MCT_R(1.0 / 8), MCT_R(1.0 / 16)},
-                                                        {0, MCT_R(3.0 / 7), MCT_R(-1.0 / 14), MCT_R(1.0 / 7)}};
+    static const mct_real within[STAGES][STAGES - 1] = {
+        {0},
+        {MCT_R(1.0 / 32)},
+        {MCT_R(-1.0 / 24), MCT_R(1.0 / 6)},
+        {MCT_R(3.0 / 32), MCT_R(1.0 / 8), MCT_R(1.0 / 16)},
+        {0, MCT_R(3.0 / 7), MCT_R(-1.0 / 14), MCT_R(1.0 / 7)}};
     static const mct_real to_position[STAGES] = {MCT_R(7.0 / 90), MCT_R(4.0 / 15), MCT_R(1.0 / 15),
                                                  MCT_R(4.0 / 45), 0};
     static const mct_real to_rate[STAGES] = {MCT_R(7.0 / 90), MCT_R(16.0 / 45), MCT_R(2.0 / 15),

@@ -311,43 +311,54 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     }
 }
 
+MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_series *rates)
+{
+    const constants_t *k = constants;
+    const mct_real h = k->step.h;
+    mct_real *const arm = rates[0], *const wheel = rates[1], *const current = rates[2];
+    mct_series s = {0}, c = {0}; /* for compilers that do not see that the effects decide both times */
+    if (effects & MCT_GRAVITY) {
+        mct_sincos(x[0], &s[0], &c[0]);
+    }
+    arm[0] = x[2];
+    wheel[0] = x[3];
+    if (effects & MCT_MOTOR_INDUCTIVE) {
+        current[0] = x[4];
+    }
+    MCT_UNROLL
+    for (int n = 0; n < order; n++) {
+        const mct_real share = h * mct_series_share(n);
+        const mct_real input = n == 0 ? u : 0;
+        const mct_real v[2] = {arm[n], wheel[n]};
+        const mct_real now = (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0;
+        mct_real tau[2];
+        torques(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, v,
+                mct_motor_force(&k->motor, effects, input, now), tau);
+        const mct_real change = (share * k->inverse_arm) * (tau[0] - tau[1]);
+        if (effects & MCT_GRAVITY) {
+            mct_series_sincos(arm, h, n, s, c);
+        }
+        arm[n + 1] = change;
+        wheel[n + 1] = (share * k->inverse_wheel) * tau[1] - change;
+        if (effects & MCT_MOTOR_INDUCTIVE) {
+            current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[1], now);
+        }
+    }
+}
+
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const constants_t *k = constants;
-    const mct_real h = k->step.h;
-    mct_series s, c, v[2], current;
-    s[0] = 0;
-    if (effects & MCT_GRAVITY) {
-        mct_sincos(x[0], &s[0], &c[0]);
-    }
-    v[0][0] = x[2];
-    v[1][0] = x[3];
-    current[0] = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
-    for (int n = 0; n < order; n++) {
-        const mct_real share = h * mct_series_share(n);
-        const mct_real input = n == 0 ? u : 0;
-        const mct_real rates[2] = {v[0][n], v[1][n]};
-        mct_real tau[2];
-        torques(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, rates,
-                mct_motor_force(&k->motor, effects, input, (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0),
-                tau);
-        const mct_real arm = (tau[0] - tau[1]) * k->inverse_arm;
-        if (effects & MCT_GRAVITY) {
-            mct_series_sincos(v[0], h, n, s, c);
-        }
-        v[0][n + 1] = share * arm;
-        v[1][n + 1] = share * (tau[1] * k->inverse_wheel - arm);
-        if (effects & MCT_MOTOR_INDUCTIVE) {
-            current[n + 1] = share * mct_motor_current_rate(&k->motor, input, rates[1], current[n]);
-        }
-    }
-    for (int i = 0; i < 2; i++) {
-        mct_series_increments(v[i], h, order, &dx[i], &dx[2 + i]);
-    }
-    if (effects & MCT_MOTOR_INDUCTIVE) {
-        dx[4] = mct_series_sum(current, order);
-    }
+    mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
+}
+
+static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                   mct_motion *out)
+{
+    const constants_t *k = constants;
+    mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
 }
 
 static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
@@ -472,24 +483,7 @@ MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 0, k, k
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 MCT_STEPPER_KERNELS(expo, 0, mct_expo_increments(&k->expo, 2, 1, effects, 2, x, u, dx))
 
-/* `expo8` has none with dry friction. */
-MCT_INLINE void expo8_increments(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                                 mct_real *dx)
-{
-    const constants_t *k = constants;
-    mct_expo_increments(&k->expo, 4, 3, effects, 2, x, u, dx);
-}
-#define EXPO8_KERNELS(motor)       \
-    MCT_KERNEL(expo8, 0, motor, 0) \
-    MCT_KERNEL(expo8, 0, motor, 1) \
-    MCT_KERNEL(expo8, 0, motor, 2) \
-    MCT_KERNEL(expo8, 0, motor, 3)
-#define EXPO8_NAMES(motor) expo8_##motor##_0, expo8_##motor##_1, expo8_##motor##_2, expo8_##motor##_3
-EXPO8_KERNELS(0)
-EXPO8_KERNELS(8)
-EXPO8_KERNELS(16)
-static const mct_kernel expo8_kernels[MCT_MOTOR_KERNELS] = {
-    EXPO8_NAMES(0), [8] = EXPO8_NAMES(8), [16] = EXPO8_NAMES(16)};
+MCT_SMOOTH_MOTOR_KERNELS(expo8, 0, mct_expo_increments(&k->expo, 4, 3, effects, 2, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -534,4 +528,5 @@ const mct_system mct_reaction_wheel = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
+    .motion = motion,
 };

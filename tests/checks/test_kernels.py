@@ -90,7 +90,7 @@ def test_a_motor_more_never_makes_a_kernel_smaller(build, library, system, stepp
 def test_an_effect_more_never_makes_a_series_smaller(build, library):
     for tag in tags(build):
         functions = library("cart_pole", tag)
-        size = [[kernels.arithmetic(functions[f"taylor_{motor}_{others}"]) for others in range(4)]
+        size = [[kernels.arithmetic(functions[f"taylor4_{motor}_{others}"]) for others in range(4)]
                 for motor in MOTORS.values()]
         for each in size:
             assert each[0] <= min(each[1], each[2]) and max(each[1], each[2]) <= each[3], f"{tag}: {size}"

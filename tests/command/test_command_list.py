@@ -10,7 +10,7 @@ def test_json_lists_systems_with_parameters_effects_steppers_and_controllers(res
         "chain", "block", "falling_sphere"]  # fmt: skip
     assert {stepper["name"]: stepper["order"] for stepper in found["steppers"]} == {
         "seed": 1, "euler": 1, "leap": 2, "rk4": 4, "taylor4": 4, "taylor6": 6, "taylor8": 8,
-        "taylor12": 12, "expo": 4, "discrete": 1,
+        "taylor12": 12, "expo": 5, "expo8": 8, "rkn6": 6, "split3": 2, "discrete": 1,
     }  # fmt: skip
     assert found["controllers"] == ["none", "swing_up_balance"]
     assert [effect["name"] for effect in found["effects"]] == [

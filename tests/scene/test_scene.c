@@ -360,7 +360,7 @@ static void test_unknown_names_are_refused_with_those_that_are_known(void)
         with_systems("x.toml:2: scene.system: found 'cart_pol'; did you mean 'cart_pole'? allowed "));
     assert_refused(MCT_ERROR_RANGE, CART "stepper = 'rk5'",
                    "x.toml:3: scene.stepper: found 'rk5'; did you mean 'rk4'? allowed seed, euler, leap, "
-                   "rk4, taylor4, taylor6, taylor8, taylor12, expo, discrete, auto");
+                   "rk4, taylor4, taylor6, taylor8, taylor12, expo, expo8, rkn6, split3, discrete, auto");
     assert_refused(MCT_ERROR_RANGE, CART "[effects]\nmotor = 'stepper'",
                    "x.toml:4: effects.motor: found 'stepper'; allowed off, quasi_static, inductive");
 }
@@ -414,7 +414,7 @@ static void test_a_stepper_too_coarse_for_the_motor_names_what_would_do(void)
         MCT_ERROR_UNSUITED, WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
         "x.toml:3: scene.stepper: found rk4, which follows an inductive motor up to h R/L = 2.785; at h = "
         "0.001 s "
-        "it is 100; allowed euler, leap, expo, or scene.dt up to 2.78e-05 s, or scene.substeps from 36");
+        "it is 100; allowed euler, leap, expo, expo8, or scene.dt up to 2.78e-05 s, or scene.substeps from 36");
     TEST_ASSERT_EQUAL_INT(
         MCT_ERROR_UNSUITED,
         read_with(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n", "scene.substeps=35", NULL));

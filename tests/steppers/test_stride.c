@@ -97,7 +97,8 @@ static void test_a_motor_may_pull_over_a_stride(void)
         for (int motor = 0; motor < 2; motor++) {
             mct_scene scene =
                 scene_of(system, MCT_STEPPER_TAYLOR12, MCT_GRAVITY | MCT_VISCOUS | motors[motor]);
-            *parameter_of(&scene, "inductance") = 0.05 * *parameter_of(&scene, "resistance"); /* slow: 50 ms */
+            *parameter_of(&scene, "inductance") =
+                0.05 * *parameter_of(&scene, "resistance"); /* slow: 50 ms */
             mct_scene strided = scene;
             strided.stride = 8;
             mct_plant plant, stepped;
@@ -159,8 +160,9 @@ static void test_a_stride_without_a_series_is_refused_with_what_is_allowed(void)
     refuse(scene, "scene.stride: found 20 beside scene.substeps = 2; allowed either above 1");
     scene.substeps = 1;
     scene.stepper = MCT_STEPPER_RK4;
-    refuse(scene, "scene.stride: found 20 with stepper rk4, which has no series to read ticks off; allowed 1, or "
-                  "stepper taylor12");
+    refuse(scene,
+           "scene.stride: found 20 with stepper rk4, which has no series to read ticks off; allowed 1, or "
+           "stepper taylor12");
     scene.stride = 0;
     TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_scene_check(&scene, &why));
     int bodies = 0;
