@@ -17,6 +17,9 @@
 
 #define MCT_TAYLOR_TERMS 13 /* of order 12 */
 
+/* The sum of nothing. Not +0, which changes -0: compilers keep that addition, and a series waits for it. */
+#define MCT_NOTHING MCT_R(-0.0)
+
 typedef mct_real mct_series[MCT_TAYLOR_TERMS];
 
 /* 1 / (n + 1): times h, it takes term n of a rate to term n + 1 of what has that rate. */
@@ -43,7 +46,7 @@ MCT_INLINE mct_real mct_series_share(int n)
 /* Term n of a b. In all of these what is known first comes first, so that no sum waits for the latest term. */
 MCT_INLINE mct_real mct_series_product(const mct_real *a, const mct_real *b, int n)
 {
-    mct_real sum = 0;
+    mct_real sum = MCT_NOTHING;
     MCT_UNROLL
     for (int j = n - 1; j > 0; j--) {
         sum += a[j] * b[n - j];
@@ -58,7 +61,7 @@ MCT_INLINE mct_real mct_series_product(const mct_real *a, const mct_real *b, int
 MCT_INLINE void mct_series_products(const mct_real *a, const mct_real *b, const mct_real *c, int n,
                                     mct_real *ab, mct_real *ac)
 {
-    mct_real first = 0, second = 0;
+    mct_real first = MCT_NOTHING, second = MCT_NOTHING;
     MCT_UNROLL
     for (int j = n - 1; j > 0; j--) {
         first += a[j] * b[n - j];
@@ -76,7 +79,7 @@ MCT_INLINE void mct_series_products(const mct_real *a, const mct_real *b, const 
 MCT_INLINE void mct_series_sincos(const mct_real *rate, mct_real h, int n, mct_real *s, mct_real *c)
 {
     const mct_real share = h * mct_series_share(n);
-    mct_real up = 0, down = 0;
+    mct_real up = MCT_NOTHING, down = MCT_NOTHING;
     MCT_UNROLL
     for (int j = 1; j < n; j++) {
         up += rate[j] * c[n - j];
@@ -93,7 +96,7 @@ MCT_INLINE void mct_series_sincos(const mct_real *rate, mct_real h, int n, mct_r
 /* Increment of what has the series: from the smallest term up, the two newest by themselves. */
 MCT_INLINE mct_real mct_series_sum(const mct_real *series, int order)
 {
-    mct_real sum = 0;
+    mct_real sum = MCT_NOTHING;
     MCT_UNROLL
     for (int n = order - 2; n > 0; n--) {
         sum += series[n];
@@ -105,7 +108,7 @@ MCT_INLINE mct_real mct_series_sum(const mct_real *series, int order)
 MCT_INLINE void mct_series_increments(const mct_real *rate, mct_real h, int order, mct_real *coordinate,
                                       mct_real *of_rate)
 {
-    mct_real way = 0;
+    mct_real way = MCT_NOTHING;
     MCT_UNROLL
     for (int n = order - 2; n > 0; n--) {
         way += mct_series_share(n) * rate[n];

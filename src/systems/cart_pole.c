@@ -310,11 +310,11 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
     for (int n = 0; n < order; n++) {
         const mct_real part = mct_series_share(n);
         const mct_real share = h * part;
-        const mct_real input = n == 0 ? u : 0;
-        mct_real sw = 0;
-        mct_real ca = 0; /* as the next cw, but for c[0] times what is sought */
+        const mct_real input = n == 0 ? u : MCT_NOTHING;
+        mct_real sw = MCT_NOTHING;
+        mct_real ca = MCT_NOTHING; /* as the next cw, but for c[0] times what is sought */
         s[n + 1] = share * cw;
-        cw = 0;
+        cw = MCT_NOTHING;
         MCT_UNROLL
         for (int j = n; j > 0; j--) { /* what is known first, first */
             sw += s[j] * w[n - j];
@@ -322,9 +322,11 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
             ca += c[j] * a[n - j];
         }
         c[n + 1] = -share * sw - (share * s[0]) * w[n];
-        mct_real f1 =
-            mct_motor_force(&k->motor, effects, input, (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0);
-        mct_real f2 = 0;
+        mct_real f1 = MCT_NOTHING;
+        if (n == 0 || (effects & MCT_MOTOR_INDUCTIVE)) {
+            f1 = mct_motor_force(&k->motor, effects, u, (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0);
+        }
+        mct_real f2 = MCT_NOTHING;
         if (effects & MCT_GRAVITY) {
             f2 = k->weight_moment * s[n];
         }

@@ -120,7 +120,7 @@ MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int or
     MCT_UNROLL
     for (int n = 0; n < order; n++) {
         const mct_real share = turn * mct_series_share(n);
-        mct_real change = n == 0 ? turn * u : 0;
+        mct_real change = n == 0 ? turn * u : MCT_NOTHING;
         if (effects & MCT_VISCOUS) {
             change -= (share * k->viscous) * w[n];
         }

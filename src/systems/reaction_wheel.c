@@ -329,12 +329,15 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
     MCT_UNROLL
     for (int n = 0; n < order; n++) {
         const mct_real share = h * mct_series_share(n);
-        const mct_real input = n == 0 ? u : 0;
+        const mct_real input = n == 0 ? u : MCT_NOTHING;
         const mct_real v[2] = {arm[n], wheel[n]};
         const mct_real now = (effects & MCT_MOTOR_INDUCTIVE) ? current[n] : 0;
+        mct_real drive = MCT_NOTHING;
+        if (n == 0 || (effects & MCT_MOTOR_INDUCTIVE)) {
+            drive = mct_motor_force(&k->motor, effects, u, now);
+        }
         mct_real tau[2];
-        torques(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, v,
-                mct_motor_force(&k->motor, effects, input, now), tau);
+        torques(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, v, drive, tau);
         const mct_real change = (share * k->inverse_arm) * (tau[0] - tau[1]);
         if (effects & MCT_GRAVITY) {
             mct_series_sincos(arm, h, n, s, c);

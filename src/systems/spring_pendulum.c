@@ -70,9 +70,6 @@ static const char *const particle_names[] = {"ball"};
 #define FASTEST_TORQUE   0.1   /* h^2 torque/(m r^2) */
 #define PIVOT_SQUARE     1e-24 /* [m^2] this near, polar coordinates say nothing about the velocity */
 
-/* The sum of nothing. Not +0, which changes -0: compilers keep that addition, and a series waits for it. */
-#define NOTHING MCT_R(-0.0)
-
 /* A step that is rarely taken: one function for all effects, for which the others keep no registers free. */
 #if defined __GNUC__
 #define RARE static __attribute__((noinline, cold))
@@ -528,7 +525,7 @@ MCT_INLINE bool stays_away(const constants_t *k, unsigned effects, const mct_rea
     const mct_real h_square = k->step.h * k->step.h;
     const mct_real stretching = x[2] * inverse;
     const mct_real speed = stretching * stretching + x[3] * x[3];
-    mct_real fall = NOTHING;
+    mct_real fall = MCT_NOTHING;
     mct_real slow = 0;
     if (effects & MCT_SPRING) {
         const mct_real rest = k->rest_rate * inverse;
@@ -545,7 +542,7 @@ MCT_INLINE bool stays_away(const constants_t *k, unsigned effects, const mct_rea
 /* Term n of a b, and of a a. */
 MCT_INLINE mct_real product(const mct_real *a, const mct_real *b, int n)
 {
-    mct_real sum = NOTHING;
+    mct_real sum = MCT_NOTHING;
     MCT_UNROLL
     for (int j = n - 1; j > 0; j--) {
         sum += a[j] * b[n - j];
@@ -558,7 +555,7 @@ MCT_INLINE mct_real product(const mct_real *a, const mct_real *b, int n)
 
 MCT_INLINE mct_real square(const mct_real *a, int n)
 {
-    mct_real half = NOTHING;
+    mct_real half = MCT_NOTHING;
     MCT_UNROLL
     for (int j = 1; 2 * j < n; j++) {
         half += a[j] * a[n - j];
@@ -592,18 +589,19 @@ MCT_INLINE void polar_taylor(const constants_t *k, unsigned effects, int order, 
         along[0] = g * s;
         across[0] = g * c;
     }
-    mct_real way = NOTHING, turn = NOTHING, of_rd = NOTHING, of_w = NOTHING; /* but the first terms */
+    mct_real way = MCT_NOTHING, turn = MCT_NOTHING, of_rd = MCT_NOTHING,
+             of_w = MCT_NOTHING; /* but the first terms */
     MCT_UNROLL
     for (int n = 0; n < order; n++) {
         const mct_real share = h * mct_series_share(n);
         r[n + 1] = share * rd[n];
         rr[n + 1] = square(r, n + 1);
         ww[n] = square(w, n);
-        mct_real radial = NOTHING;
-        mct_real torque = n == 0 ? push : NOTHING;
+        mct_real radial = MCT_NOTHING;
+        mct_real torque = n == 0 ? push : MCT_NOTHING;
         if (effects & MCT_SPRING) {
             radial -= k->stiffness_rate * r[n];
-            radial += n == 0 ? k->rest_rate * inverse : NOTHING;
+            radial += n == 0 ? k->rest_rate * inverse : MCT_NOTHING;
         }
         if (effects & MCT_VISCOUS) {
             radial -= k->length_damping * rd[n];
@@ -619,7 +617,7 @@ MCT_INLINE void polar_taylor(const constants_t *k, unsigned effects, int order, 
             along[n + 1] = share * product(w, across, n);
             across[n + 1] = -share * product(w, along, n);
         }
-        mct_real carried = NOTHING; /* of (r^2 w) but w itself */
+        mct_real carried = MCT_NOTHING; /* of (r^2 w) but w itself */
         MCT_UNROLL
         for (int j = n; j > 0; j--) {
             carried += rr[j] * w[n + 1 - j];

@@ -414,7 +414,8 @@ static void test_a_stepper_too_coarse_for_the_motor_names_what_would_do(void)
         MCT_ERROR_UNSUITED, WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n",
         "x.toml:3: scene.stepper: found rk4, which follows an inductive motor up to h R/L = 2.785; at h = "
         "0.001 s "
-        "it is 100; allowed euler, leap, expo, expo8, or scene.dt up to 2.78e-05 s, or scene.substeps from 36");
+        "it is 100; allowed euler, leap, expo, expo8, or scene.dt up to 2.78e-05 s, or scene.substeps from "
+        "36");
     TEST_ASSERT_EQUAL_INT(
         MCT_ERROR_UNSUITED,
         read_with(WHEEL "stepper = 'rk4'\n[parameters]\ninductance = 12.1e-5\n", "scene.substeps=35", NULL));

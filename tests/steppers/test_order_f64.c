@@ -19,7 +19,6 @@
 
 #define DURATION 0.512
 
-
 void setUp(void)
 {
 }
