@@ -36,7 +36,7 @@ static mct_plant plant_of(const bench_scene *scene)
 
 static void test_a_plant_begins_at_the_start_of_the_scene(void)
 {
-    for (int n = 0; n < SCENE_COUNT; n++) {
+    for (int n = 0; n < SCENE_PEERS; n++) {
         const bench_scene *scene = &bench_scenes[n];
         const mct_plant plant = plant_of(scene);
         double x[SCENE_STATES];
@@ -83,7 +83,7 @@ static void test_the_closed_form_has_the_accelerations_of_an_evaluation(void)
 {
     test_random random = {20};
     double worst = 0;
-    for (int n = 0; n < SCENE_COUNT; n++) {
+    for (int n = 0; n < SCENE_PEERS; n++) {
         const bench_scene *scene = &bench_scenes[n];
         mct_plant plant = plant_of(scene);
         double k[SCENE_CONSTANTS];

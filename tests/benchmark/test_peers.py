@@ -12,6 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOOLS = ROOT / "tools/benchmark"
 sys.path.insert(0, str(TOOLS))
 
+import central  # noqa: E402
 import diagrams  # noqa: E402
 import peers  # noqa: E402
 
@@ -43,6 +44,37 @@ def test_a_table_has_the_ratio_of_the_best_peer_to_ours(capsys):
     assert rows["1e-02"][3:-1] == ["25", "`leap`, 1 ms", "10", "GSL rk4", "0.4"]
     assert rows["1e-06"][3:-1] == ["40", "`rk4`, 1 ms", "120", "GSL rk8pd", "3"]
     assert rows["1e-12"][3:-1] == ["-", "", "-", "", ""]
+
+
+def test_mujocos_rk4_stands_beside_our_cheapest_at_its_own_error(capsys):
+    theirs = [point("MuJoCo", "RK4", 1e-6, 2000, step=1e-3), point("MuJoCo", "RK4", 1e-9, 9000, step=2e-4),
+              point("MuJoCo", "Euler", 1e-2, 500, step=1e-3)]  # fmt: skip
+    rows = peers.beside_mujoco(SCENES, POINTS + theirs)
+    assert [(row["mujoco"]["step"], row["mctau"] and row["mctau"]["method"], row["ratio"]) for row in rows] == [
+        (1e-3, "rk4", 50), (2e-4, None, None)]  # fmt: skip
+    peers.mujoco_table(rows, True)
+    assert "| cart_pole | 1 ms | 1.0e-06 | 2000 | 40 | `rk4`, 1 ms | 1.0e-08 | 50 |" in capsys.readouterr().out
+    assert peers.beside_mujoco(SCENES, POINTS) == [{"scene": "cart_pole held", "mujoco": None, "mctau": None, "ratio": None}]
+
+
+def test_the_goals_of_the_central_systems_are_judged_by_their_figures(capsys):
+    errors = {("double", scene, stepper): error for scene in central.MOTORS for stepper, error in (("rk4", 1e-6), ("expo", 1e-9))}
+    times = {key: 60 if key[2] == "rk4" else 70 for key in errors}
+    errors["double", "wheel_10_us_held", "rk4"] = float("inf")
+    del times["double", "wheel_10_us_held", "rk4"]
+    central.motors(errors, times, "double")
+    said = capsys.readouterr().out
+    assert "| 10 us | refused | 1e-09, 1.17 |" in said and "1.0e-09 at 1.17 times" in said and said.rstrip().endswith("met.")
+    central.motors(errors, times | {("double", "wheel_0_held", "expo"): 90}, "double")
+    assert "NOT met" in capsys.readouterr().out
+
+
+def test_compensation_is_judged_by_one_stepper_of_each_system(capsys):
+    errors = {(name, scene, stepper): error for name in ("float", "plain") for scene in central.FLOATS
+              for stepper, error in (("leap", 1e-4), ("rk4", 1e-7), ("expo", 2e-7))}  # fmt: skip
+    central.floats(errors, {key: 55 if key[0] == "float" else 50 for key in errors})
+    said = capsys.readouterr().out
+    assert "`rk4` within 1.0e-07 at 1.10 times" in said and "`expo` within 2.0e-07 at 1.10 times" in said
 
 
 def test_programs_that_compute_different_motions_are_told():

@@ -150,6 +150,47 @@ def test_a_longer_step_is_counted_in_parts_of_a_tick(costs):
     assert one["ns_per_ms"] == pytest.approx(one["ns_per_tick"], rel=1e-12)  # at a tick of 1 ms
 
 
+def test_neighbouring_steps_are_less_than_an_octave_apart_where_they_can_be(costs):
+    for scene in ("cart_pole_free", "linked_particles"):
+        steps = [one["step"] for one in line(costs(scene), "rk4")]
+        assert all(fine < coarse <= 2.001 * fine for coarse, fine in zip(steps, steps[1:]))
+        assert sum(coarse < 1.7 * fine for coarse, fine in zip(steps, steps[1:])) >= len(steps) // 2
+
+
+def test_who_counted_instructions_is_told_in_json_table_and_page(costs, mctau, scenes, source, tmp_path):
+    found = costs("pendulum")
+    counted = any(one["instructions_per_tick"] is not None for one in found["candidates"])
+    assert counted == (found["instructions_counted_by"] is not None) == (found["instructions_not_counted"] is None)
+    page = tmp_path / "cost.html"
+    has_python = (source / "build/venv/bin/python").exists()
+    said = mctau("cost", scenes / "pendulum.toml", "--instructions", "none", *(["--html", page] if has_python else [])).stdout
+    assert "Instructions: not counted: not asked for." in said
+    assert not has_python or "not counted: not asked for" in page.read_text()
+
+
+def test_valgrind_counts_the_same_instructions_as_the_processor(costs):
+    found = costs("linked_particles", "--instructions", "valgrind")
+    if found["instructions_counted_by"] is None:
+        pytest.skip(f"not counted: {found['instructions_not_counted']}")
+    assert found["instructions_counted_by"] == "valgrind"
+    processor = costs("linked_particles")
+    assert all(one["instructions_per_tick"] > 10 for one in found["candidates"])
+    if processor["instructions_counted_by"] != "processor":
+        pytest.skip("the kernel does not let a program count its instructions")
+    for one, other in zip(found["candidates"], processor["candidates"]):
+        assert (one["stepper"], one["step"]) == (other["stepper"], other["step"])
+        # The processor's counter may be off by some instructions when it is interrupted.
+        assert one["instructions_per_tick"] == pytest.approx(other["instructions_per_tick"], rel=0.02, abs=4)
+
+
+def test_without_valgrind_the_reason_is_told(mctau, scenes):
+    done = mctau("cost", scenes / "linked_particles.toml", "--instructions", "valgrind", "--json", env={"PATH": "/nowhere"})
+    assert done.returncode == 0
+    found = json.loads(done.stdout)
+    assert found["instructions_counted_by"] is None
+    assert found["instructions_not_counted"] == "valgrind is not installed"
+
+
 def test_instructions_are_whole_work_per_step_or_not_told(costs):
     steps = {one["substeps"]: one["instructions_per_tick"] for one in line(costs("linked_particles"), "rk4")}
     if steps[1] is None:
@@ -187,6 +228,7 @@ BAD = {
     "no time": (["pendulum.toml", "--duration", "0"], "scene.duration"),
     "precision": (["pendulum.toml", "--precision", "half"], "--precision: found half; allowed double"),
     "seconds": (["pendulum.toml", "--reference-seconds", "0"], "--reference-seconds: found 0; allowed"),
+    "counter": (["pendulum.toml", "--instructions", "me"], "--instructions: found me; allowed processor, valgrind, none"),
     "part of a tick": (["pendulum.toml", "--duration", "0.0005"], "whole number of ticks"),
 }
 
@@ -197,6 +239,17 @@ def test_what_cannot_be_measured_is_refused(mctau, scenes, case):
     done = mctau("cost", scenes / scene, *rest, "--json")
     assert done.returncode == 2 and done.stdout == ""
     assert words in done.stderr
+
+
+# A mass shot through the pivot on a stiff spring.
+DIVERGING = ["--set", "initial.length_rate=-1e6", "--set", "parameters.stiffness=1e6", "--duration", "1"]
+
+
+def test_a_scene_that_diverges_has_no_reference_and_says_so(mctau, scenes):
+    for verb, *request in (("cost",), ("pick", "--tolerance", "1e-3")):
+        done = mctau(verb, scenes / "spring_pendulum.toml", *request, *DIVERGING, "--json")
+        assert done.returncode == 1 and done.stdout == ""
+        assert "diverges with every stepper" in done.stderr and "--duration" in done.stderr
 
 
 def test_a_missing_scene_is_an_error_of_files(mctau, tmp_path):

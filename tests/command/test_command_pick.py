@@ -76,6 +76,44 @@ def test_float_is_not_taken_below_what_it_can_reach(mctau, scenes, both_precisio
     assert found["closest"]["precision"] == "float" and found["closest"]["verified_error"] > 1e-10
 
 
+# --- scenes whose end state means nothing ---
+
+WILD = ["--set", "initial.angle=0.3", "--set", "initial.length=1.5", "--set", "parameters.length_friction=0",
+        "--set", "parameters.angle_friction=0"]  # fmt: skip
+CHAOTIC = {
+    "a spring pendulum of high energy": ["spring_pendulum.toml", *WILD, "--duration", "60"],
+    "a pendulum balanced without its controller": ["cart_pole.toml", "--set", "controller.kind=none", "--set",
+                                                   "initial.pole_angle=1e-6", "--set", "effects.viscous=false"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CHAOTIC)
+def test_of_a_scene_whose_end_means_nothing_nothing_is_picked_and_the_horizon_is_offered(mctau, scenes, case):
+    name, *sets = CHAOTIC[case]
+    found = pick(mctau, scenes / name, *sets, "--tolerance", "1e-4", exit_code=1)
+    assert found["sensitive"] and not found["met"] and all(found[key] is None for key in KEYS)
+    assert 0 < found["horizon"] < found["duration"] and found["closest"] == {}
+    said = mctau("pick", scenes / name, *sets, "--tolerance", "1e-4")
+    assert said.returncode == 1 and said.stderr == ""
+    assert f"the state at {found['duration']:g} s means nothing" in said.stdout
+    assert f"The first {found['horizon']:g} s mean something: --horizon picks for them" in said.stdout
+
+
+@pytest.mark.parametrize("case", CHAOTIC)
+def test_the_horizon_is_taken_when_asked_for_or_given(mctau, scenes, case):
+    name, *sets = CHAOTIC[case]
+    found = pick(mctau, scenes / name, *sets, "--tolerance", "1e-4", "--horizon")
+    assert found["met"] and found["verified_error"] <= 1e-4 and found["horizon"] < found["duration"]
+    shorter = repr(round(0.9 * found["horizon"] / found["tick"]) * found["tick"])
+    given = pick(mctau, scenes / name, *sets, "--tolerance", "1e-4", "--duration", shorter)
+    assert given["met"] and not given["sensitive"] and given["horizon"] == given["duration"]
+
+
+def test_what_a_controller_holds_upright_is_no_chaotic_scene(mctau, scenes):
+    found = pick(mctau, scenes / "reaction_wheel.toml", "--tolerance", "1e-2")
+    assert found["met"] and found["input"] == "replayed" and found["horizon"] < found["duration"]
+
+
 @pytest.mark.parametrize("option", ["--tolerance", "--budget"])
 @pytest.mark.parametrize("text", ["0", "-1", "nan", "inf", "one", "", "1e-6x"])
 def test_a_request_that_is_no_positive_number_is_refused(mctau, scenes, option, text):
@@ -99,6 +137,25 @@ def test_a_request_that_makes_no_sense_is_refused(mctau, scenes, case):
     arguments, words = BAD[case]
     done = mctau("pick", scenes / "pendulum.toml", *arguments)
     assert done.returncode == 2 and done.stdout == "" and words in done.stderr
+
+
+CANNOT_RUN = {
+    "an unknown system": (["--set", "scene.system=rocket"], "scene.system"),
+    "a mass of nothing": (["--set", "parameters.mass=0"], "parameters.mass: found 0"),
+    "no time": (["--duration", "0"], "scene.duration"),
+    "no step": (["--dt", "0"], "scene.dt: found 0"),
+}
+
+
+@pytest.mark.parametrize("case", CANNOT_RUN)
+def test_a_scene_that_cannot_run_is_refused_as_in_a_run(mctau, scenes, case):
+    sets, words = CANNOT_RUN[case]
+    done = mctau("pick", scenes / "pendulum.toml", "--tolerance", "1e-3", *sets, "--json")
+    assert done.returncode == 2 and done.stdout == "" and words in done.stderr
+
+
+def test_a_scene_that_is_no_file_is_an_error_of_files(mctau, tmp_path):
+    assert mctau("pick", tmp_path / "none.toml", "--tolerance", "1e-3").returncode == 3
 
 
 def test_a_process_has_no_step_to_choose(mctau, scenes):

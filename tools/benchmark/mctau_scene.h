@@ -92,9 +92,15 @@ static inline void mctau_read(const bench_scene *scene, const mct_plant *plant, 
         x[3] = rd * s + across * c;
         return;
     }
+    if (scene->form == SCENE_BODY) { /* no angles, no turns: the sum is the value */
+        for (int i = 0; i < scene->states; i++) {
+            const int entry = i < 4 ? MCTAU_BODY_Q + i : MCTAU_BODY_W + i - 4;
+            x[i] = (double)plant->state.x[entry] + (double)plant->state.c[entry];
+        }
+        return;
+    }
     for (int i = 0; i < scene->states; i++) {
-        const int body = i < 4 ? MCTAU_BODY_Q + i : MCTAU_BODY_W + i - 4;
-        x[i] = mct_plant_value(plant, scene->form == SCENE_BODY ? body : i);
+        x[i] = mct_plant_value(plant, i);
     }
 }
 

@@ -8,7 +8,7 @@
 static double now_ns(void)
 {
     struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time); /* what others do on this core does not count */
     return (double)time.tv_sec * 1e9 + (double)time.tv_nsec;
 }
 

@@ -17,6 +17,8 @@
 #include <sys/time.h>
 #include <time.h>
 
+#include "samples.h"
+
 enum { MOST_RUNS = 15 };
 
 static struct {
@@ -48,61 +50,6 @@ static void allow(double ns)
     setitimer(ITIMER_PROF, &time, NULL);
 }
 
-static void fail(const char *what, const char *why)
-{
-    fprintf(stderr, "%s: %s\n", what, why);
-    exit(1);
-}
-
-/* The samples of a scene as benchmark_references has written them: lines of its name, then numbers. */
-static void read_reference(const char *file, const bench_scene *scene, double *samples)
-{
-    char name[64];
-    FILE *in = fopen(file, "r");
-    if (in == NULL) {
-        fail(file, "cannot be read");
-    }
-    bool found = false;
-    int row = 0;
-    while (row < SCENE_SAMPLES && fscanf(in, " %63[^:]:", name) == 1) {
-        found = strcmp(name, scene->name) == 0;
-        for (int i = 0; i < SCENE_STATES; i++) {
-            double value;
-            if (fscanf(in, "%lf", &value) != 1) {
-                fail(file, "is cut off");
-            }
-            if (found && i < scene->states) {
-                samples[row * scene->states + i] = value;
-            }
-        }
-        row += found ? 1 : 0;
-    }
-    fclose(in);
-    if (row < SCENE_SAMPLES) {
-        fail(scene->name, "has no reference");
-    }
-}
-
-/* NaN when it is 1 or more, or the motion is. */
-static double worst_error(const bench_scene *scene, const double *reference, const double *samples)
-{
-    double worst = 0;
-    for (int i = 0; i < scene->states; i++) {
-        double scale = 1;
-        for (int k = i; k < SCENE_SAMPLES * scene->states; k += scene->states) {
-            scale = fmax(scale, fabs(reference[k]));
-        }
-        for (int k = i; k < SCENE_SAMPLES * scene->states; k += scene->states) {
-            const double error = fabs(samples[k] - reference[k]) / scale;
-            if (!(error < 1)) {
-                return NAN; /* another motion, or none */
-            }
-            worst = fmax(worst, error);
-        }
-    }
-    return worst;
-}
-
 static int by_size(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -115,7 +62,7 @@ typedef struct {
 
 static point measure_point(const bench_scene *scene, int method, double setting, const double *reference)
 {
-    point found = {NAN, NAN};
+    point found = {(double)NAN, (double)NAN};
     double samples[SCENE_SAMPLES * SCENE_STATES], times[MOST_RUNS], spent = 0;
     void *self = the_peer.open(scene, method, setting);
     if (self == NULL) {
@@ -125,14 +72,15 @@ static point measure_point(const bench_scene *scene, int method, double setting,
     bool is_well = true;
     int runs = 0;
     peer_is_late = 0;
-    allow((effort.fewest_runs + 1) * effort.longest_run);
+    allow((effort.fewest_runs + 1) * effort.longest_run *
+          (setting == 1 ? 4 : 1)); /* one step a span: whatever it takes */
     while (is_well && runs < MOST_RUNS && (runs < effort.fewest_runs || spent < effort.longest_point)) {
         const double begin = now_ns();
         is_well = the_peer.run(self, inputs, samples);
         times[runs] = now_ns() - begin;
         spent += times[runs++];
         if (runs == 1) {
-            found.error = worst_error(scene, reference, samples);
+            found.error = samples_error(scene, reference, samples);
             is_well = is_well && found.error == found.error;
         }
     }
@@ -198,7 +146,7 @@ static void print_scenes(void)
                                         [SCENE_BODY] = "body"};
     printf("{\"tick\": %g, \"ticks\": %d, \"ticks_per_sample\": %d, \"scenes\": [", SCENE_TICK, SCENE_TICKS,
            SCENE_TICKS_PER_SAMPLE);
-    for (int n = 0; n < SCENE_COUNT; n++) {
+    for (int n = 0; n < SCENE_PEERS; n++) {
         const bench_scene *scene = &bench_scenes[n];
         double p[SCENE_PARAMETERS];
         scene_parameters(scene, p);
@@ -222,7 +170,7 @@ int main(int argc, char **argv)
     const bench_scene *scene = argc > 2 ? scene_by_name(argv[2]) : NULL;
     if (scene == NULL || argc > 4 || (argc == 4 && strcmp(argv[3], "--quick") != 0)) {
         fprintf(stderr, "usage: %s REFERENCES SCENE [--quick]\nscenes:", argv[0]);
-        for (int i = 0; i < SCENE_COUNT; i++) {
+        for (int i = 0; i < SCENE_PEERS; i++) {
             fprintf(stderr, "%s %s", i ? "," : "", bench_scenes[i].name);
         }
         fprintf(stderr, "\n");
@@ -235,7 +183,7 @@ int main(int argc, char **argv)
         effort.stride = 2;
     }
     double reference[SCENE_SAMPLES * SCENE_STATES];
-    read_reference(argv[1], scene, reference);
+    samples_read(argv[1], scene, reference);
     printf("peer\t%s\t%s\n", the_peer.name, the_peer.version());
     for (int method = 0; method < the_peer.method_count; method++) {
         sweep(scene, method, reference);

@@ -29,6 +29,7 @@ TOLERANCES = [10.0**-n for n in range(2, 13)]
 SAME_MOTION = 1e-6  # the same physics: each program's closest must be nearer than this, where it is accurate at all
 DEAREST = {True: 2500, False: 40000}  # ns for each ms where sweeps end, by --quick: peers.c
 OURS = ["mctau", "mctau float"]
+GOAL_MUJOCO = 40
 # Name in tables, program, and what installs it.
 PEERS = {
     "MuJoCo": ("benchmark_peer_mujoco", "tools/setup"),
@@ -133,6 +134,10 @@ def setting(found):
     return f"tol {found['tolerance']:.0e}"
 
 
+def method_text(found):
+    return f"`{found['method']}`{' float' if found['program'] == OURS[1] else ''}, {setting(found)}"
+
+
 def tables(scenes, points, names, quick):
     peers = [name for name in names if name not in OURS]
     tolerances = TOLERANCES[:: 2 if quick else 1]
@@ -152,13 +157,43 @@ def tables(scenes, points, names, quick):
                 rows.append([
                     name if tolerance == tolerances[0] else "", f"{tolerance:.0e}",
                     f"{figure(ours['ns_per_ms'])}" if ours else "-",
-                    (f"`{ours['method']}`{' float' if ours['program'] == OURS[1] else ''}, {setting(ours)}"
-                     if ours else ""),
+                    method_text(ours) if ours else "",
                     *[figure(each["ns_per_ms"]) if each else "-" for each in cells],
                     f"{best['program']} {best['method']}" if best else "",
                     f"{best['ns_per_ms'] / ours['ns_per_ms']:.2g}" if ours and best else "",
                 ])
         print_table(["scene", "tolerance", "mctau", "by", *peers, "best peer", "best peer / mctau"], rows)
+
+
+def beside_mujoco(scenes, points):
+    """For each held scene and step of MuJoCo's RK4: our cheapest with no more than its error. None: it has no motion."""
+    rows = []
+    for scene in scenes:
+        if not scene["held"]:
+            continue
+        theirs = [each for each in points if (each["scene"], each["program"], each["method"])
+                  == (scene["name"], "MuJoCo", "RK4")]  # fmt: skip
+        for each in sorted(theirs, key=lambda one: -one["step"]) or [None]:
+            ours = each and cheapest(points, scene["name"], OURS, each["error"])
+            rows.append({"scene": scene["name"], "mujoco": each, "mctau": ours,
+                         "ratio": each["ns_per_ms"] / ours["ns_per_ms"] if ours else None})  # fmt: skip
+    return rows
+
+
+def mujoco_table(rows, quick):
+    if not rows:
+        return
+    print(f"\n### MuJoCo's RK4, at its own error\n\nUnder a held input, by MuJoCo's timestep: its error, and the cheapest "
+          f"here that has no more. Goal: {GOAL_MUJOCO} times faster.\n")  # fmt: skip
+    shown = []
+    for row in rows:
+        theirs, ours = row["mujoco"], row["mctau"]
+        shown.append([row["scene"].rsplit(" ", 1)[0],
+                      *([setting(theirs), f"{theirs['error']:.1e}", figure(theirs["ns_per_ms"])] if theirs
+                        else ["all tried", "lost, or too dear", f"> {DEAREST[quick]}"]),
+                      *([figure(ours["ns_per_ms"]), method_text(ours), f"{ours['error']:.1e}"] if ours else ["-", "", ""]),
+                      f"{row['ratio']:.0f}" if row["ratio"] else ""])  # fmt: skip
+    print_table(["scene", "timestep", "error", "MuJoCo RK4", "mctau", "by", "error", "MuJoCo / mctau"], shown)
 
 
 def closest(scenes, points, names):
@@ -211,7 +246,8 @@ def main():
     for scene in scenes:
         scene.pop("inputs")
     everything = {"schema": SCHEMA, "unit": "ns per simulated ms", "machine": about, "core": core,
-                  "quick": given.quick, "versions": versions, "missing": missing, "scenes": scenes, "points": points}
+                  "quick": given.quick, "versions": versions, "missing": missing, "scenes": scenes, "points": points,
+                  "mujoco_rk4": beside_mujoco(scenes, points) if "MuJoCo" in there else []}
     if given.pictures:
         draw(everything, report.path(given.build, "points.json"), given.pictures)
     if given.json:
@@ -229,6 +265,7 @@ def main():
               f"{DEAREST[given.quick]} ns.")
         print(NOTES)
         tables(scenes, points, list(there), given.quick)
+        mujoco_table(everything["mujoco_rk4"], given.quick)
         closest(scenes, points, list(there))
     return 0 if same(scenes, points) else 1
 

@@ -19,11 +19,12 @@
 #define WHEEL_START {2}
 #define BODY_START {1, 0, 0, 0, 0.5, 2, 0.3}
 
+#define WHEEL_HELD(text, doc, states, time_constant) \
+    {"wheel " text " held", doc, SCENE_WHEEL, true, states, WHEEL(time_constant), WHEEL_START, 5}
 #define WHEEL_SCENES(text, time_constant) \
     {"wheel " text " free", "mctau's default reaction wheel, L/R " text ", from 2 rad at rest, no voltage", \
      SCENE_WHEEL, false, 5, WHEEL(time_constant), WHEEL_START, 0}, \
-    {"wheel " text " held", "the same under up to 5 V", \
-     SCENE_WHEEL, true, 5, WHEEL(time_constant), WHEEL_START, 5}
+    WHEEL_HELD(text, "the same under up to 5 V", 5, time_constant)
 /* clang-format on */
 
 const bench_scene bench_scenes[SCENE_COUNT] = {
@@ -42,6 +43,9 @@ const bench_scene bench_scenes[SCENE_COUNT] = {
     WHEEL_SCENES("10 us", 1e-5),
     {"body free", "principal moments 1, 2, 3 kg m^2, no forces, from w = (0.5, 2, 0.3) rad/s", SCENE_BODY,
      false, 7, BODY, BODY_START, 0},
+    /* no peers */
+    WHEEL_HELD("5 ms", "L/R 5 ms", 5, 5e-3),
+    WHEEL_HELD("0", "no inductance: the current is no state", 4, 0),
 };
 
 const bench_scene *scene_by_name(const char *name)

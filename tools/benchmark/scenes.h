@@ -1,5 +1,6 @@
 /*
- * The scenes of tools/bench --peers: the same parameters, initial states and inputs for every program, 10 s each.
+ * The scenes of tools/bench --peers: the same parameters, initial states and inputs for every program, 10 s each. Behind
+ * them those that this library is measured by alone (--central).
  *
  * A free scene has no input, and its state is asked for every 200 ms: any longer step, and dense output, is allowed.
  * A held one has a new input at every tick of 1 ms, as a controller gives it.
@@ -52,7 +53,7 @@ typedef struct {
     double amplitude;           /* of the input */
 } bench_scene;
 
-enum { SCENE_COUNT = 13 };
+enum { SCENE_PEERS = 13, SCENE_COUNT = 15 };
 extern const bench_scene bench_scenes[SCENE_COUNT];
 
 /* By its name; NULL without. */

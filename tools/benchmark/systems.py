@@ -2,7 +2,7 @@
 """Tables of tools/bench --systems and --drift, in Markdown: what each system costs, and what each stepper keeps.
 
 usage: systems.py BUILD [--quick] [--core N]
-       systems.py BUILD --drift STEPS
+       systems.py BUILD --drift STEPS [--scene SYSTEM or STEPPER]...
 """
 
 import argparse
@@ -66,11 +66,13 @@ def costs(folder, quick, core):
     )
 
 
-def drifts(folder, steps):
+def drifts(folder, steps, systems):
     found = {}  # (system and what, stepper): {precision: drift}
     runs = {name: report.path(folder, file) for name, file in DRIFT.items() if report.path(folder, file).exists()}
     for precision, file in runs.items():
-        done = subprocess.run([file, str(steps)], stdout=subprocess.PIPE, text=True, check=True)
+        done = subprocess.run([file, str(steps), *systems], stdout=subprocess.PIPE, text=True)
+        if done.returncode:
+            sys.exit(done.returncode)
         for line in done.stdout.splitlines():
             _, stepper, drift, what = line.split(maxsplit=3)
             found.setdefault((what, stepper), {})[precision] = float(drift)
@@ -83,7 +85,8 @@ def drifts(folder, steps):
         fitting = [drifts for (what, by), drifts in found.items() if by == stepper and what.endswith(f", {kind}")]
         return [max(drifts[precision] for drifts in fitting) for precision in runs if fitting]
 
-    print(f"Largest relative drift over {steps:.0e} steps of 1 ms, {' / '.join(runs)}; the worst of all systems:\n")
+    print(f"Largest relative drift over {steps:.0e} steps of 1 ms, {' / '.join(runs)}; "
+          f"{'the worst of all systems' if not systems else 'of ' + ', '.join(systems)}:\n")  # fmt: skip
     kinds = list(dict.fromkeys(what.split(", ")[1] for what, _ in found))
     print_table(
         ["stepper", *kinds], [[f"`{stepper}`", *[cell(worst(kind, stepper)) for kind in kinds]] for stepper in steppers]
@@ -106,9 +109,10 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--core", type=int)
     parser.add_argument("--drift", type=int)
+    parser.add_argument("--scene", action="append", default=[])
     given = parser.parse_args()
     if given.drift:
-        drifts(given.build, given.drift)
+        drifts(given.build, given.drift, given.scene)
     else:
         costs(given.build, given.quick, given.core)
 

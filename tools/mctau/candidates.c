@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "mctau/stepper.h"
+#include "runner_cost.h"
 #include "say.h"
 
 enum { MOST_SUBSTEPS = 1000 }; /* as in a scene */
@@ -269,7 +270,6 @@ static bool follow_somehow(const study *self, candidate *run, double *rows)
 /* Follows a start that differs a little, and leaves out what comes after it has come to differ much. */
 static void find_horizon(study *self, int stepper)
 {
-    enum { ALIGNMENT = 32 }; /* ticks of the longest steps */
     double *rows = study_rows(self), *other = study_rows(self);
     candidate run = {.stepper = stepper, .multiple = 1};
     if (follow_somehow(self, &run, rows)) {
@@ -290,7 +290,11 @@ static void find_horizon(study *self, int stepper)
             }
         }
         if (horizon < self->ticks) {
-            self->ticks = horizon > ALIGNMENT ? horizon - horizon % ALIGNMENT : horizon > 0 ? horizon : 1;
+            uint64_t parts = 480; /* so that longer steps fit in */
+            while (parts > 1 && 8 * parts > horizon) {
+                parts /= 2;
+            }
+            self->ticks = horizon > 0 ? horizon - horizon % parts : 1;
         }
         set_scale(self, rows);
     } else {
@@ -338,9 +342,9 @@ static void find_reference(study *self, double seconds)
     }
 }
 
-int study_begin(study *self, const scene_file *file, double seconds)
+/* A scene's study without inputs, horizon and reference. */
+static int set_up(study *self, const scene_file *file)
 {
-    mct_message why;
     const mct_scene *scene = &file->scene;
     memset(self, 0, sizeof *self);
     if (mct_systems[scene->system]->is_process) {
@@ -354,24 +358,42 @@ int study_begin(study *self, const scene_file *file, double seconds)
     self->scene.controller = MCT_CONTROLLER_NONE;
     self->scene.input = MCT_INPUT_NONE;
     self->scene.precision = MCT_PRECISION_DOUBLE;
-    self->progress = isatty(STDERR_FILENO) == 1;
     self->is_recorded = scene->controller != MCT_CONTROLLER_NONE;
     self->held = self->is_recorded || scene->input != MCT_INPUT_NONE;
     self->keeps_tick = self->held;
     self->all_ticks = (uint64_t)(scene->duration / scene->dt + 0.5);
     self->ticks = self->all_ticks < STUDY_MOST_TICKS ? self->all_ticks : STUDY_MOST_TICKS;
     self->states = mct_state_count(scene);
-    if (self->ticks == 0) {
-        return say(EXIT_USAGE, "scene.duration: found 0 s; allowed a tick or more, for there to be an error");
+    return self->ticks > 0
+               ? 0
+               : say(EXIT_USAGE,
+                     "scene.duration: found 0 s; allowed a tick or more, for there to be an error");
+}
+
+/* Inputs of the first ticks; the rest is 0. */
+static int find_inputs(study *self, const scene_file *file, uint64_t ticks)
+{
+    if (!self->held) {
+        return 0;
     }
-    if (self->held) {
-        const run_options options = {.samples = file->samples, .sample_count = file->sample_count};
-        self->inputs = need_memory(malloc(self->ticks * sizeof *self->inputs));
-        const mct_status status = file->runner->inputs(scene, &options, self->ticks, self->inputs, &why);
-        if (status != MCT_OK) {
-            study_end(self);
-            return say_status(status, &why);
-        }
+    mct_message why;
+    const run_options options = {.samples = file->samples, .sample_count = file->sample_count};
+    self->inputs = need_memory(calloc(self->ticks, sizeof *self->inputs));
+    const mct_status status = file->runner->inputs(&file->scene, &options, ticks, self->inputs, &why);
+    if (status != MCT_OK) {
+        study_end(self);
+        return say_status(status, &why);
+    }
+    return 0;
+}
+
+int study_begin(study *self, const scene_file *file, double seconds)
+{
+    int exit_code = set_up(self, file);
+    self->progress = isatty(STDERR_FILENO) == 1;
+    exit_code = exit_code != 0 ? exit_code : find_inputs(self, file, self->ticks);
+    if (exit_code != 0) {
+        return exit_code;
     }
     find_reference(self, seconds);
     hide(self);
@@ -384,6 +406,20 @@ int study_begin(study *self, const scene_file *file, double seconds)
     return 0;
 }
 
+int study_begin_again(study *self, const scene_file *file, uint64_t ticks)
+{
+    const int exit_code = set_up(self, file);
+    self->ticks = ticks;
+    return exit_code != 0
+               ? exit_code
+               : find_inputs(self, file, ticks < RUNNER_COUNTED_TICKS ? ticks : RUNNER_COUNTED_TICKS);
+}
+
+bool study_is_sensitive(const study *self)
+{
+    return self->growth > STUDY_LARGEST_GROWTH;
+}
+
 void study_end(study *self)
 {
     free(self->inputs);
@@ -393,18 +429,6 @@ void study_end(study *self)
 }
 
 /* --- candidates --- */
-
-/* The divisor of `ticks` nearest to m, within half an octave; 0 when there is none. */
-static int divisor_near(uint64_t ticks, int m)
-{
-    int nearest = 0;
-    for (int d = (int)ceil(m * 0.70711); d <= (int)(m * 1.41421); d++) {
-        if (ticks % (uint64_t)d == 0 && (nearest == 0 || abs(d - m) < abs(nearest - m))) {
-            nearest = d;
-        }
-    }
-    return nearest;
-}
 
 /* The power of two at `value` or next below, from 1 to 2^19. */
 static int power_below(double value)
@@ -427,31 +451,44 @@ static int add(const study *self, candidate one, candidate *found, int count)
     return count + 1;
 }
 
-int study_candidates(const study *self, int precision, bool deep, candidate *found)
+/* 1, 2, 3, 4, 6, 8, 12 ... */
+static int half_octave_behind(int s)
+{
+    return (s & (s - 1)) != 0 ? s / 3 * 4 : s > 1 ? s / 2 * 3 : 2;
+}
+
+/* Of one stepper and precision. */
+static int add_steps(const study *self, candidate one, bool deep, candidate *found, int count)
 {
     const double dt = self->scene.dt;
-    /* The tick, down to a 32nd of it. Free: 32 ms to 1/8 ms, and as much about the tick. */
-    const int longest = self->keeps_tick ? 1 : power_below(fmax(32, 0.032 / dt));
-    const double most = deep               ? fmax(128, dt / 8e-6)
-                        : self->keeps_tick ? fmax(32, dt / 31.25e-6)
-                                           : fmax(8, dt / 0.125e-3);
-    const int finest = power_below(fmin(MOST_SUBSTEPS, most));
+    /* The tick, down to a 32nd of it. Free: 64 ms to 1/8 ms, and as much about the tick. */
+    const int longest = self->keeps_tick ? 1 : (int)fmax(64, 0.064 / dt);
+    const double shortest = self->keeps_tick ? fmax(32, dt / 31.25e-6) : fmax(8, dt / 0.125e-3);
+    const int finest = power_below(fmin(MOST_SUBSTEPS, shortest));
+    const int deepest = deep ? power_below(fmin(MOST_SUBSTEPS, fmax(128, dt / 8e-6))) : finest;
+    int last = 0;
+    one.substeps = 1;
+    for (int m = longest; m > 1; m--) { /* those in which the run is a whole number of steps, not too close */
+        if (self->ticks % (uint64_t)m == 0 && (last == 0 || 4 * last >= 5 * m)) {
+            one.multiple = last = m;
+            count = add(self, one, found, count);
+        }
+    }
+    one.multiple = 1;
+    for (int s = 1; s <= deepest; s = s < finest ? half_octave_behind(s) : 2 * s) {
+        one.substeps = s;
+        count = add(self, one, found, count);
+    }
+    return count;
+}
+
+int study_candidates(const study *self, int precision, bool deep, candidate *found)
+{
     int count = 0;
     for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
         for (int i = MCT_PRECISION_DOUBLE; i <= MCT_PRECISION_FLOAT; i++) {
-            if (precision != ANY_PRECISION && precision != i) {
-                continue;
-            }
-            for (int m = longest; m > 1; m /= 2) {
-                const candidate one = {.stepper = stepper,
-                                       .precision = i,
-                                       .substeps = 1,
-                                       .multiple = divisor_near(self->ticks, m)};
-                count = one.multiple > 0 ? add(self, one, found, count) : count;
-            }
-            for (int s = 1; s <= finest; s *= 2) {
-                const candidate one = {.stepper = stepper, .precision = i, .multiple = 1, .substeps = s};
-                count = add(self, one, found, count);
+            if (precision == ANY_PRECISION || precision == i) {
+                count = add_steps(self, (candidate){.stepper = stepper, .precision = i}, deep, found, count);
             }
         }
     }
@@ -485,7 +522,7 @@ static int by_value(const void *a, const void *b)
 }
 
 /* Round after round over all, so that a machine that slows down meanwhile slows all of them. */
-void study_time(const study *self, candidate *list, int count, bool instructions)
+void study_time(const study *self, candidate *list, int count)
 {
     double(*samples)[ROUNDS] = need_memory(calloc((size_t)count + 1, sizeof *samples));
     for (int round = 0; round < ROUNDS; round++) {
@@ -495,15 +532,9 @@ void study_time(const study *self, candidate *list, int count, bool instructions
             const mct_scene scene = scene_of(self, &list[i]);
             trial asked = trial_of(self, &list[i]);
             asked.sample_ns = 5e5;
-            asked.count = instructions && round == 0;
-            if (list[i].diverged || find_runner(list[i].precision)->try(&scene, &asked, &why) != MCT_OK) {
-                samples[i][round] = (double)NAN;
-                continue;
-            }
-            samples[i][round] = asked.ns / list[i].multiple;
-            if (asked.count) {
-                list[i].instructions = asked.instructions / list[i].multiple;
-            }
+            const bool well =
+                !list[i].diverged && find_runner(list[i].precision)->try(&scene, &asked, &why) == MCT_OK;
+            samples[i][round] = well ? asked.ns / list[i].multiple : (double)NAN;
         }
     }
     for (int i = 0; i < count; i++) {
@@ -514,6 +545,21 @@ void study_time(const study *self, candidate *list, int count, bool instructions
     }
     hide(self);
     free(samples);
+}
+
+bool study_count(const study *self, candidate *list, int count)
+{
+    bool counted = false;
+    for (int i = 0; i < count; i++) {
+        mct_message why;
+        const mct_scene scene = scene_of(self, &list[i]);
+        trial asked = trial_of(self, &list[i]);
+        asked.count = true;
+        const bool well = find_runner(list[i].precision)->try(&scene, &asked, &why) == MCT_OK;
+        list[i].instructions = well ? asked.instructions / list[i].multiple : (double)NAN;
+        counted = counted || !isnan(list[i].instructions);
+    }
+    return counted;
 }
 
 static double known_error(const study *self, const candidate *one)
@@ -577,7 +623,7 @@ void study_print(const study *self, FILE *file)
         fprintf(file, "%s at %d agrees to %.1e. Known to %.1e.\n", mct_steppers[quality->other_stepper].name,
                 quality->other_substeps, quality->agreement, quality->uncertainty);
     }
-    if (self->growth > STUDY_LARGEST_GROWTH) {
+    if (study_is_sensitive(self)) {
         fprintf(file,
                 "Sensitive, as chaotic and unstable motion is: a small difference at the start, and so any "
                 "error, grows up to\n%s%.0e times. Measured is the part in which it grows at most 1e4 times: "
@@ -600,7 +646,7 @@ void study_json(const study *self, json *out)
     json_number(out, "duration", (double)self->all_ticks * dt);
     json_number(out, "horizon", (double)self->ticks * dt);
     json_number(out, "growth", self->growth);
-    json_boolean(out, "sensitive", self->growth > STUDY_LARGEST_GROWTH);
+    json_boolean(out, "sensitive", study_is_sensitive(self));
     json_object(out, "reference");
     json_text(out, "stepper", mct_steppers[quality->stepper].name);
     json_integer(out, "substeps", quality->substeps);

@@ -14,7 +14,7 @@
 #include "json.h"
 #include "scene_file.h"
 
-enum { ANY_PRECISION = -1, MAX_CANDIDATES = 1024 };
+enum { ANY_PRECISION = -1, MAX_CANDIDATES = 4096 };
 
 typedef struct {
     int stepper;
@@ -68,7 +68,12 @@ typedef struct {
  * methods. Gives 0, or says what is wrong and gives the exit code.
  */
 int study_begin(study *self, const scene_file *file, double seconds);
+/* Without horizon and reference, which are known: as many candidates as a study of so many ticks has. */
+int study_begin_again(study *self, const scene_file *file, uint64_t ticks);
 void study_end(study *self);
+
+/* Whether a small difference at the start, and so any error, has come to mean too much before the scene's end. */
+bool study_is_sensitive(const study *self);
 
 /*
  * What a user should know of it, a sentence a line: how the reference is verified, which part of the run
@@ -79,13 +84,12 @@ void study_json(const study *self, json *out);
 
 /*
  * All candidates that suit, of one or any precision: by stepper and precision, from the longest step to the
- * shortest. `deep`: to a 128th of the tick, or 8 us.
+ * shortest, half an octave apart where the run and the tick have such parts. `deep`: to a 128th of the tick, or
+ * 8 us.
  */
 int study_candidates(const study *self, int precision, bool deep, candidate *found);
 
-/*
- * States of a candidate's run; `rows` has room for those of the reference, or for twice as many half steps.
- */
+/* States of a candidate's run, those after its ticks; `rows` has room for those of the reference. */
 bool study_follow(const study *self, const candidate *one, double *rows);
 double *study_rows(const study *self);
 /* Worst distance of two runs over the ticks that both have; their ends' too, unless NULL. */
@@ -94,8 +98,10 @@ double study_distance(const study *self, const double *a, int a_multiple, const 
 
 /* Fills error_end, error_worst, diverged of each. */
 void study_measure(const study *self, candidate *list, int count);
-/* Fills ns, ns_low, ns_high, and instructions if asked to; not of those that diverged. */
-void study_time(const study *self, candidate *list, int count, bool instructions);
+/* Fills ns, ns_low, ns_high; not of those that diverged. */
+void study_time(const study *self, candidate *list, int count);
+/* Fills instructions; false where they could not be counted. */
+bool study_count(const study *self, candidate *list, int count);
 /*
  * Marks the candidates of which none is both cheaper and more accurate; errors below the reference's count as
  * its own.

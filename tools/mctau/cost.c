@@ -9,7 +9,9 @@
 #include <unistd.h>
 
 #include "candidates.h"
+#include "instructions.h"
 #include "mctau/stepper.h"
+#include "runner_cost.h"
 #include "say.h"
 #include "verbs.h"
 
@@ -19,6 +21,9 @@ static const option options[] = {
     {"precision", "NAME", NULL, "only candidates of this precision, double or float; default: both"},
     {"reference-seconds", "S", NULL,
      "computing time that each of the reference's two methods may take; default 4"},
+    {"instructions", "BY", NULL,
+     "who counts instructions: processor, valgrind or none; default: the processor, or valgrind where the "
+     "kernel does not let a program read its counter"},
     {"plot", "FILE.svg", NULL, "a diagram: error over cost, a line for each stepper and precision"},
     {"html", "FILE", NULL, "a page that stands alone, with diagram and table"},
     OPTION_SET,
@@ -62,6 +67,8 @@ typedef struct {
     study study;
     candidate *list;
     int count;
+    const char *counted_by;  /* processor or valgrind; NULL: instructions were not counted */
+    const char *not_counted; /* why */
 } costs;
 
 /* --- JSON --- */
@@ -70,6 +77,8 @@ static void print_json(const costs *self, FILE *file)
 {
     json out = json_begin(file, "mctau.cost/1");
     study_json(&self->study, &out);
+    json_text(&out, "instructions_counted_by", self->counted_by);
+    json_text(&out, "instructions_not_counted", self->not_counted);
     json_list(&out, "candidates");
     for (int i = 0; i < self->count; i++) {
         const candidate *one = &self->list[i];
@@ -143,12 +152,11 @@ static void print_text(const costs *self, const char *path)
         }
     }
     free(sorted);
-    bool counted = false;
-    for (int i = 0; i < self->count; i++) {
-        counted = counted || !isnan(self->list[i].instructions);
-    }
-    if (!counted) {
-        printf("\nInstructions: this system does not let a program count its own.\n");
+    if (self->counted_by != NULL) {
+        printf("\nInstructions: counted by %s.\n",
+               strcmp(self->counted_by, "valgrind") == 0 ? "valgrind (callgrind)" : "the processor");
+    } else {
+        printf("\nInstructions: not counted: %s.\n", self->not_counted);
     }
 }
 
@@ -205,9 +213,76 @@ static int show_costs(const costs *self, const scene_file *file)
     return plot != NULL || html != NULL ? draw(self, file->path, plot, html) : 0;
 }
 
-static int run_costs(const scene_file *file, int precision, double seconds)
+/* --- instructions --- */
+
+enum { ANYONE = -1, PROCESSOR, VALGRIND, NOBODY, COUNTERS };
+static const char *const counters[] = {"processor", "valgrind", "none"};
+
+/* Under valgrind: the candidates that the first process has, and no more than that. */
+static int count_under_valgrind(const scene_file *file, int precision)
 {
-    costs self;
+    study about;
+    const int exit_code = study_begin_again(&about, file, strtoull(instructions_note(), NULL, 10));
+    if (exit_code == 0) {
+        candidate *list = need_memory(malloc(MAX_CANDIDATES * sizeof *list));
+        study_count(&about, list, study_candidates(&about, precision, false, list));
+        free(list);
+        study_end(&about);
+    }
+    return exit_code;
+}
+
+/* NULL, or why not. */
+static const char *count_by_valgrind(costs *self, const char *path)
+{
+    if (strcmp(path, "-") == 0) {
+        return "valgrind cannot read the scene once more from standard input";
+    }
+    char ticks[24];
+    snprintf(ticks, sizeof ticks, "%llu", (unsigned long long)self->study.ticks);
+    const size_t pieces =
+        2 * (size_t)self->count; /* half of the ticks, and all: what begins and ends drops out */
+    uint64_t *counts = need_memory(calloc(pieces, sizeof *counts));
+    const char *why_not = instructions_by_valgrind(ticks, counts, pieces);
+    for (int i = 0; i < self->count && why_not == NULL; i++) {
+        self->list[i].instructions =
+            (double)(counts[2 * i + 1] - counts[2 * i]) / (RUNNER_COUNTED_TICKS / 2) / self->list[i].multiple;
+    }
+    free(counts);
+    return why_not;
+}
+
+static void count_instructions(costs *self, const scene_file *file, int counter)
+{
+    static const char closed[] = "the kernel does not let a program read the processor's counter";
+    if (counter == NOBODY) {
+        self->not_counted = "not asked for";
+        return;
+    }
+    if (counter != VALGRIND && study_count(&self->study, self->list, self->count)) {
+        self->counted_by = counters[PROCESSOR];
+        return;
+    }
+    self->not_counted = counter == PROCESSOR ? closed : count_by_valgrind(self, file->path);
+    self->counted_by = self->not_counted == NULL ? counters[VALGRIND] : NULL;
+}
+
+static int read_counter(const char *name, int *counter)
+{
+    *counter = ANYONE;
+    for (int i = 0; name != NULL && i < COUNTERS; i++) {
+        *counter = strcmp(name, counters[i]) == 0 ? i : *counter;
+    }
+    return name == NULL || *counter != ANYONE
+               ? 0
+               : say(EXIT_USAGE, "--instructions: found %s; allowed processor, valgrind, none", name);
+}
+
+/* --- all of it --- */
+
+static int run_costs(const scene_file *file, int precision, double seconds, int counter)
+{
+    costs self = {.list = NULL};
     const int exit_code = study_begin(&self.study, file, seconds);
     if (exit_code != 0) {
         return exit_code;
@@ -215,7 +290,8 @@ static int run_costs(const scene_file *file, int precision, double seconds)
     self.list = need_memory(malloc(MAX_CANDIDATES * sizeof *self.list));
     self.count = study_candidates(&self.study, precision, false, self.list);
     study_measure(&self.study, self.list, self.count);
-    study_time(&self.study, self.list, self.count, true);
+    study_time(&self.study, self.list, self.count);
+    count_instructions(&self, file, counter);
     study_mark_pareto(&self.study, self.list, self.count);
     const int shown = show_costs(&self, file);
     free(self.list);
@@ -226,16 +302,18 @@ static int run_costs(const scene_file *file, int precision, double seconds)
 static int run_verb(const arguments *given)
 {
     scene_file file;
-    int precision;
+    int precision, counter;
     double seconds = 4;
     const char *asked = arguments_value(given, "reference-seconds");
     int exit_code = read_precision(arguments_value(given, "precision"), &precision);
+    exit_code = exit_code != 0 ? exit_code : read_counter(arguments_value(given, "instructions"), &counter);
     if (exit_code == 0 && asked != NULL) {
         exit_code = read_number("reference-seconds", asked, 0.01, 3600, "0.01 to 3600 s", &seconds);
     }
     exit_code = exit_code != 0 ? exit_code : scene_file_read(&file, given);
     if (exit_code == 0) {
-        exit_code = run_costs(&file, precision, seconds);
+        exit_code = instructions_note() != NULL ? count_under_valgrind(&file, precision)
+                                                : run_costs(&file, precision, seconds, counter);
         scene_file_free(&file);
     }
     return exit_code;

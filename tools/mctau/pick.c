@@ -23,6 +23,10 @@ static const option options[] = {
     {"costs", "FILE", NULL,
      "of a target: lines stepper,precision,instructions a step,instructions a tick beside"},
     {"duration", "S", "scene.duration", "how much of the scene, a whole number of ticks"},
+    {"horizon", NULL, NULL,
+     "of a motion that is sensitive to its start, as chaotic motion is: the part before any error has grown "
+     "1e4 "
+     "times"},
     {"dt", "S", "scene.dt", NULL},
     {"precision", "NAME", NULL, "only candidates of this precision, double or float; default: both"},
     OPTION_SET,
@@ -43,15 +47,25 @@ const verb verb_pick = {
             "two methods agree on. If it fails there, the next is tried. A tolerance is met when measured "
             "error and\n"
             "uncertainty of the reference together are within it, at every tick.\n"
+            "Where a small difference at the start grows 1e4 times before the scene's end, as in chaotic "
+            "motion, the "
+            "end\n"
+            "state means nothing, and nothing is picked without --horizon. A controller's inputs are "
+            "replayed without "
+            "it;\n"
+            "what it holds upright would fall, so of such a scene the part before is taken in any case.\n"
             "Which steps and inputs there are, and what an error is, mctau cost --help says.",
     .options = options,
     .examples = "  mctau pick scenes/cart_pole_free.toml --tolerance 1e-8\n"
                 "  mctau pick scenes/reaction_wheel.toml --tolerance 1e-6 --budget 100\n"
                 "  mctau pick scenes/cart_pole.toml --budget 60 --precision float --json\n",
-    .exit_codes = "  0  found and verified\n"
-                  "  1  nothing meets the request; what comes closest is shown\n"
-                  "  2  the command line or the scene is wrong\n"
-                  "  3  a file could not be read\n",
+    .exit_codes =
+        "  0  found and verified\n"
+        "  1  nothing meets the request; what comes closest is shown. Or the scene is sensitive, and "
+        "--horizon\n"
+        "     was not given; or it diverges\n"
+        "  2  the command line or the scene is wrong\n"
+        "  3  a file could not be read\n",
     .run = run_verb,
 };
 
@@ -76,7 +90,8 @@ typedef struct {
     double *rows[2]; /* of two pilots */
     candidate *list;
     int count;
-    int failed; /* candidates that verification refused */
+    int failed;   /* candidates that verification refused */
+    bool refused; /* the scene, which is sensitive */
     bool met;
     candidate found; /* which meets the request, or comes closest */
 } picking;
@@ -101,37 +116,22 @@ static bool is_same_family(const candidate *a, const candidate *b)
     return a->stepper == b->stepper && a->precision == b->precision;
 }
 
-/* The next shorter step. */
-static candidate finer(const candidate *one, const candidate *next)
+/*
+ * Richardson: with the error proportional to h^p, the difference of two runs, at h and at h/2, tells both. The error of
+ * the run at h.
+ */
+static double prediction_of(const picking *self, const candidate *one)
 {
     candidate half = *one;
-    if (next != NULL && is_same_family(next, one)) {
-        return *next;
-    }
     half.substeps *= 2;
     half.step /= 2;
-    return half;
-}
-
-/*
- * Richardson: with the error proportional to h^p, the difference of two runs tells both. The error of the run
- * at the longer step.
- */
-static double predict(const picking *self, const candidate *one, const candidate *half)
-{
-    if (!study_follow(self->study, one, self->rows[0]) || !study_follow(self->study, half, self->rows[1])) {
+    if (!study_follow(self->study, one, self->rows[0]) || !study_follow(self->study, &half, self->rows[1])) {
         return (double)INFINITY;
     }
     const double difference =
-        study_distance(self->study, self->rows[0], one->multiple, self->rows[1], half->multiple, NULL);
-    const double ratio = pow(one->step / half->step, mct_steppers[one->stepper].order);
+        study_distance(self->study, self->rows[0], one->multiple, self->rows[1], half.multiple, NULL);
+    const double ratio = pow(2, mct_steppers[one->stepper].order);
     return difference * ratio / (ratio - 1);
-}
-
-static double prediction_of(const picking *self, int i)
-{
-    const candidate half = finer(&self->list[i], i + 1 < self->count ? &self->list[i + 1] : NULL);
-    return predict(self, &self->list[i], &half);
 }
 
 /* --- the choice --- */
@@ -147,18 +147,46 @@ static bool is_hopeless(const picking *self, int i)
     return isfinite(one->predicted) && one->predicted * falls > 100 * self->asked->tolerance;
 }
 
-/* Of candidate i's stepper and precision the first at or behind it that is predicted to do; -1: none. */
+#define SMALL 0.01 /* an error from which on errors fall by the order, until roundings are left */
+
+/* Errors of one stepper and precision, from the longest step on. */
+typedef struct {
+    double least;
+    int idle; /* how many since then were no smaller */
+} descent;
+
+/* Whether shorter steps help no more: roundings are all that is left. */
+static bool is_exhausted(descent *self, double error)
+{
+    const bool falls = error < 0.9 * self->least || !(self->least < SMALL);
+    self->idle = falls ? 0 : self->idle + 1;
+    self->least = fmin(self->least, error);
+    return self->idle >= 2;
+}
+
+/*
+ * Of candidate i's stepper and precision the first at or behind it that is predicted to do; -1: none. Once errors fall
+ * by the order, steps more than an octave too long are passed over.
+ */
 static int first_that_may_do(picking *self, int i)
 {
-    for (const candidate *begin = &self->list[i]; i < self->count && is_same_family(&self->list[i], begin);
-         i++) {
-        self->list[i].predicted = prediction_of(self, i);
-        if (self->list[i].predicted <= 0.5 * self->asked->tolerance) {
+    const double allowed = 0.5 * self->asked->tolerance;
+    descent predicted = {(double)INFINITY, 0};
+    for (const candidate *begin = &self->list[i]; i < self->count && is_same_family(&self->list[i], begin);) {
+        candidate *one = &self->list[i];
+        one->predicted = prediction_of(self, one);
+        if (one->predicted <= allowed) {
             return i;
         }
-        if (is_hopeless(self, i)) {
+        if (is_hopeless(self, i) || is_exhausted(&predicted, one->predicted)) {
             return -1;
         }
+        const double falls = pow(allowed / one->predicted, 1.0 / mct_steppers[one->stepper].order);
+        const double longest = one->predicted < SMALL ? 2 * falls * one->step : one->step;
+        do {
+            i++;
+        } while (i + 1 < self->count && is_same_family(&self->list[i + 1], begin) &&
+                 self->list[i].step > longest);
     }
     return -1;
 }
@@ -182,7 +210,7 @@ static void pick_by_tolerance(picking *self)
         if (is_next_family(self, i)) {
             heads[count] = first_that_may_do(self, i);
             if (heads[count] >= 0) {
-                study_time(self->study, &self->list[heads[count]], 1, false);
+                study_time(self->study, &self->list[heads[count]], 1);
                 count++;
             }
         }
@@ -211,7 +239,7 @@ static void pick_by_tolerance(picking *self)
         if (heads[best] < 0) {
             heads[best] = heads[--count];
         } else {
-            study_time(self->study, &self->list[heads[best]], 1, false);
+            study_time(self->study, &self->list[heads[best]], 1);
         }
     }
 }
@@ -262,6 +290,27 @@ static bool keep(picking *self, condition holds, comparison is_better)
     return kept > 0;
 }
 
+/* All, but for steps so short that they help no more. */
+static void measure_all(const picking *self)
+{
+    descent measured = {(double)INFINITY, 0};
+    bool is_over = false;
+    for (int i = 0; i < self->count; i++) {
+        candidate *one = &self->list[i];
+        if (is_next_family(self, i)) {
+            measured = (descent){(double)INFINITY, 0};
+            is_over = false;
+        }
+        if (is_over) {
+            one->diverged = true;
+            one->error_worst = one->error_end = (double)INFINITY;
+            continue;
+        }
+        study_measure(self->study, one, 1);
+        is_over = is_exhausted(&measured, one->error_worst);
+    }
+}
+
 /*
  * When prediction has found nothing, or cannot say what is most accurate: all are measured, of a budget those
  * that it allows.
@@ -274,17 +323,16 @@ static void pick_of_all(picking *self)
         return;
     }
     if (has_budget && on_host) {
-        study_time(self->study, self->list, self->count, false);
+        study_time(self->study, self->list, self->count);
     }
     const bool allowed = !(has_budget || !on_host) || keep(self, is_allowed, is_cheaper);
-    study_measure(self->study, self->list, self->count);
+    measure_all(self);
     const bool well = keep(self, meets, is_truer);
     if (!has_budget && on_host) {
-        study_time(self->study, self->list, self->count, false);
+        study_time(self->study, self->list, self->count);
     }
     self->found = best_of(self, well && has_tolerance ? is_cheaper : is_truer);
-    const candidate half = finer(&self->found, NULL);
-    self->found.predicted = predict(self, &self->found, &half);
+    self->found.predicted = prediction_of(self, &self->found);
     self->met = allowed && well && !self->found.diverged;
 }
 
@@ -295,7 +343,6 @@ static void pick(picking *self)
     for (int i = 0; i < 2; i++) {
         self->rows[i] = study_rows(self->study);
     }
-    self->found.step = 0;
     if (isfinite(self->asked->tolerance)) {
         pick_by_tolerance(self);
     }
@@ -372,12 +419,27 @@ static void print_choice(const picking *self, const char *path)
     printf(" --set scene.substeps=%d\n", one->substeps);
 }
 
+/* What the motion is asked to mean to its end, and does not. */
+static void print_sensitive(const picking *self)
+{
+    const study *about = self->study;
+    const double dt = about->scene.dt;
+    printf("\nNothing is picked: the state at %g s means nothing, since by then any error has grown beyond "
+           "measure.\n"
+           "The first %g s mean something: --horizon picks for them, or --duration %g.\n",
+           (double)about->all_ticks * dt, (double)about->ticks * dt, (double)about->ticks * dt);
+}
+
 static void print_text(const picking *self, const char *path)
 {
     const request *asked = self->asked;
     printf("%s: %s, tick %g s, %g s\n", path, mct_systems[self->study->scene.system]->name,
            self->study->scene.dt, (double)self->study->ticks * self->study->scene.dt);
     study_print(self->study, stdout);
+    if (self->refused) {
+        print_sensitive(self);
+        return;
+    }
     printf(self->met ? "\nThe %s" : "\nNothing meets the request: ",
            isfinite(asked->tolerance) ? "cheapest" : "most accurate");
     if (isfinite(asked->tolerance)) {
@@ -429,8 +491,10 @@ int choose_stepper(scene_file *file)
         char substeps[16];
         snprintf(substeps, sizeof substeps, "%d", scene->substeps);
         scene_file_note(file, "scene.substeps", substeps);
-        say(0, "note: stepper = auto: %s; error %.1e over %g s, allowed %g; %.3g ns a tick", text,
-            self.found.error_worst, (double)about.ticks * scene->dt, scene->tolerance, self.found.ns);
+        say(0, "note: stepper = auto: %s; error %.1e over %g s%s, allowed %g; %.3g ns a tick", text,
+            self.found.error_worst, (double)about.ticks * scene->dt,
+            study_is_sensitive(&about) ? ", after which the motion is sensitive to any" : "",
+            scene->tolerance, self.found.ns);
     } else {
         say(EXIT_CHECK_FAILED,
             "scene.stepper: found auto, and nothing meets scene.tolerance = %g at this tick and precision; "
@@ -531,7 +595,11 @@ static int pick_for(const scene_file *file, const request *asked)
         return exit_code;
     }
     picking self = {.study = &about, .asked = asked};
-    pick(&self);
+    self.refused =
+        study_is_sensitive(&about) && !about.is_recorded && arguments_value(file->given, "horizon") == NULL;
+    if (!self.refused) {
+        pick(&self);
+    }
     if (arguments_value(file->given, "json") != NULL) {
         print_json(&self);
     } else {

@@ -122,6 +122,11 @@ def verification(costs):
     return " ".join(said)
 
 
+def instructions(costs):
+    counter = {"processor": "by the processor", "valgrind": "by valgrind (callgrind)"}.get(costs["instructions_counted_by"])
+    return f"Instructions are counted {counter}." if counter else f"Instructions: not counted: {costs['instructions_not_counted']}."
+
+
 def page(costs, scene):
     css = run_data.read_text(pathlib.Path(__file__).with_name("page.css"))
     heads = ("front", "stepper", "precision", "step [ms]", "error at the end", "worst error", "ns per tick", "quartiles",
@@ -135,7 +140,7 @@ def page(costs, scene):
 <h1>What accuracy costs</h1><p class="lead">{html.escape(INPUTS[costs["input"]])} {html.escape(verification(costs))}</p></header>
 <figure class="plot">{diagram(costs)}</figure>
 <p class="note">An error is that of the worst state at the worst tick, relative to the state's largest value, or to 1 (SI) where
-that is less. Circles: nothing is both cheaper and more accurate.</p>
+that is less. Circles: nothing is both cheaper and more accurate. {html.escape(instructions(costs))}</p>
 <h2>Every candidate</h2><div class="wide-table"><table><thead><tr>{"".join(f"<th>{head}</th>" for head in heads)}</tr></thead>
 <tbody>{"".join(rows(costs))}</tbody></table></div>
 </body></html>
