@@ -35,6 +35,9 @@ def test_a_system_lists_the_steppers_that_suit_it(result):
     steppers = {system["name"]: system["steppers"] for system in result("list")["systems"]}
     assert "expo" in steppers["reaction_wheel"]
     assert "expo" not in steppers["cart_pole"]
+    rare = {system["name"]: system["steppers_without_friction"] for system in result("list")["systems"]}
+    assert rare["pendulum"] == ["rkn6"]
+    assert rare["cart_pole"] == []
 
 
 def test_one_system_can_be_asked_for(result, mctau):

@@ -153,15 +153,13 @@ static double least_order(int stepper, double time_constant, int steps, double *
     return least;
 }
 
+#if !MCT_REAL_IS_FLOAT /* whose rounding hides an order */
 /*
  * expo8 from 160 ms on, where w h is 1.4: later on rounding shows. Where L/R is near the step, the current's
  * own time shows between the nodes, at errors below 1e-10: the last halvings gain less.
  */
 static void test_expo_has_order_5_and_expo8_7_in_the_mean_over_four_halvings_for_any_motor(void)
 {
-    if (MCT_REAL_IS_FLOAT) {
-        TEST_IGNORE_MESSAGE("rounding hides an order in float");
-    }
     for (int i = 0; i < TIME_CONSTANTS; i++) {
         double mean;
         compute_reference(time_constants[i], no_input);
@@ -170,6 +168,7 @@ static void test_expo_has_order_5_and_expo8_7_in_the_mean_over_four_halvings_for
         TEST_ASSERT_TRUE(mean > 7);
     }
 }
+#endif
 
 /* Beyond use an error is what it may be; but the sine is bounded, and so is what it does to the state. */
 static void test_a_state_stays_finite_at_absurd_steps_and_rates(void)
@@ -218,7 +217,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_held_wheel_at_1_khz_is_within_1e_12_by_expo8_and_1e_10_by_expo_for_any_motor);
     RUN_TEST(test_a_free_wheel_in_long_steps_is_within_1e_12_and_1e_10_by_expo8_for_any_motor);
+#if !MCT_REAL_IS_FLOAT
     RUN_TEST(test_expo_has_order_5_and_expo8_7_in_the_mean_over_four_halvings_for_any_motor);
+#endif
     RUN_TEST(test_a_state_stays_finite_at_absurd_steps_and_rates);
     RUN_TEST(test_many_steps_in_one_call_are_bit_for_bit_those_of_many_calls);
     RUN_TEST(test_expo8_has_no_kernel_with_dry_friction);

@@ -29,9 +29,20 @@ const verb verb_list = {
     .run = run_verb,
 };
 
+/* With the effects that a scene has by default, or with these but for one. */
+static bool suits_without(const mct_system *system, int stepper, uint32_t effect)
+{
+    return system->kernel(stepper, system->standard_effects & MCT_KERNEL_EFFECTS & ~effect) != NULL;
+}
+
 static bool suits(const mct_system *system, int stepper)
 {
-    return system->kernel(stepper, system->standard_effects & MCT_KERNEL_EFFECTS) != NULL;
+    return suits_without(system, stepper, 0);
+}
+
+static bool may_suit(const mct_system *system, int stepper)
+{
+    return suits(system, stepper) || suits_without(system, stepper, MCT_VISCOUS);
 }
 
 /* Name that an effect has in a mask, as a scene writes it. */
@@ -221,6 +232,13 @@ static void json_system(json *out, const mct_system *system)
     json_list(out, "steppers");
     for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
         if (suits(system, i)) {
+            json_text(out, NULL, mct_steppers[i].name);
+        }
+    }
+    json_end_list(out);
+    json_list(out, "steppers_without_friction");
+    for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
+        if (may_suit(system, i) && !suits(system, i)) {
             json_text(out, NULL, mct_steppers[i].name);
         }
     }
@@ -459,12 +477,12 @@ static void print_suited(int stepper)
 {
     int suited = 0;
     for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        suited += suits(mct_systems[i], stepper) ? 1 : 0;
+        suited += may_suit(mct_systems[i], stepper) ? 1 : 0;
     }
     const bool shown = 2 * suited < MCT_SYSTEM_COUNT;
     const char *between = shown ? "; for " : "; not for ";
     for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        if (suits(mct_systems[i], stepper) == shown) {
+        if (may_suit(mct_systems[i], stepper) == shown) {
             printf("%s%s", between, mct_systems[i]->name);
             between = ", ";
         }
@@ -475,7 +493,7 @@ static void print_steppers(const mct_system *only)
 {
     printf("Steppers (scene.stepper)\n");
     for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
-        if (only != NULL && !suits(only, i)) {
+        if (only != NULL && !may_suit(only, i)) {
             continue;
         }
         printf("  %-10s order %d  %s", mct_steppers[i].name, mct_steppers[i].order, mct_steppers[i].doc);

@@ -562,7 +562,7 @@ static int read_target(const arguments *given, request *asked, instruction_costs
     if (path == NULL) {
         return say(EXIT_USAGE,
                    "--target: found cortex-m4f, whose instructions cannot be counted here; allowed together "
-                   "with --costs FILE, in which they stand as counted elsewhere");
+                   "with --costs FILE, as tools/instructions SCENE -o FILE writes it");
     }
     asked->costs = costs;
     return read_costs(path, costs);
