@@ -133,6 +133,7 @@ static void test_a_free_wheel_in_long_steps_is_within_1e_12_and_1e_10_by_expo8_f
     }
 }
 
+#if !MCT_REAL_IS_FLOAT /* whose rounding hides an order */
 /* Least order of a halving, and the mean over four of them, from so many steps in EVERY ticks on. */
 static double least_order(int stepper, double time_constant, int steps, double *mean)
 {
@@ -153,7 +154,6 @@ static double least_order(int stepper, double time_constant, int steps, double *
     return least;
 }
 
-#if !MCT_REAL_IS_FLOAT /* whose rounding hides an order */
 /*
  * expo8 from 160 ms on, where w h is 1.4: later on rounding shows. Where L/R is near the step, the current's
  * own time shows between the nodes, at errors below 1e-10: the last halvings gain less.
