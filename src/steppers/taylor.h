@@ -145,7 +145,8 @@ MCT_INLINE void mct_taylor_motion(mct_series_of series, const void *constants, m
                                   mct_motion *motion)
 {
     enum { ORDER = MCT_TAYLOR_TERMS - 1 };
-    mct_series rates[MCT_MAX_ENCODERS + 1];
+    mct_series rates[MCT_MAX_ENCODERS + 1] = {
+        {0}}; /* compilers do not see that all that is read is written */
     series(constants, effects, ORDER, state->x, u, rates);
     for (int i = 0; i < n; i++) {
         for (int k = 0; k <= ORDER; k++) {

@@ -482,9 +482,11 @@ MCT_INLINE void mct_rotor_free_series(const mct_rotor *k, int order, const mct_r
                 sum[i] += a[j][i] * b[n - j][i];
             }
         }
-        MCT_UNROLL
-        for (int i = 0; i < 4 && n > 0; i++) {
-            sum[i] += a[n][i] * b[0][i];
+        if (n > 0) {
+            MCT_UNROLL
+            for (int i = 0; i < 4; i++) {
+                sum[i] += a[n][i] * b[0][i];
+            }
         }
         b[n][3] = inverse * ((n == 0 ? 2 : 1) * mct_dot(L, now) - sum[3]);
         way += share * b[n][3];

@@ -4,7 +4,7 @@
 usage: diagrams.py POINTS.json FOLDER
 
 Each program is one line, its cheapest method and setting for every accuracy; this library's methods are drawn each,
-too. Free and held motions of one mechanism are two pictures, peers-NAME-free.svg and peers-NAME-held.svg. Needs
+too, in thin ones. Free and held motions of one mechanism are two pictures, peers-NAME-free.svg and peers-NAME-held.svg. Needs
 matplotlib: build/venv/bin/python.
 """
 
@@ -49,9 +49,9 @@ def draw(scene, points, file):
              color=COLOURS[OURS], alpha=0.45, linewidth=0.8, marker=marker, markersize=4, markerfacecolor="none",
              label=f"mctau {method}")
     for program in dict.fromkeys(each["program"] for each in points):
-        if program != OURS:
-            line(axes, front([each for each in points if each["program"] == program]), color=COLOURS.get(program),
-                 linewidth=1.4, marker=".", linestyle="--" if program.startswith(OURS) else "-", label=program)
+        line(axes, front([each for each in points if each["program"] == program]), color=COLOURS.get(program),
+             linewidth=2.2 if program == OURS else 1.4, marker=".",
+             linestyle="--" if program.startswith(f"{OURS} ") else "-", label=program)
     axes.set(xscale="log", yscale="log", xlabel="worst error over 10 s", ylabel="ns per simulated ms",
              title=scene["name"].replace("_", "-"))
     axes.invert_xaxis()
