@@ -109,9 +109,9 @@ typedef void (*mct_kernel)(const void *constants, mct_state *state, mct_real inp
 #define MCT_MOTION_STATES 5  /**< of a system whose motion can be had as a series */
 #define MCT_MOTION_TERMS  13 /**< of order 13 in coordinates, 12 in the other states */
 
-/** The motion over one step: after the part f of it, state i has changed by the sum of term[i][n] f^(n+1). */
+/** The motion over one step: after the part f of it, state i has changed by the sum of term[n][i] f^(n+1). */
 typedef struct {
-    mct_real term[MCT_MOTION_STATES][MCT_MOTION_TERMS];
+    mct_real term[MCT_MOTION_TERMS][MCT_MOTION_STATES]; /**< 0 behind the states */
     mct_real remainder; /**< what rounding the step's length leaves out of each change, relative to it */
 } mct_motion;
 

@@ -132,11 +132,30 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
     return plant->system->prepare(scene, mct_scene_step(scene), &plant->constants, why);
 }
 
+/*
+ * Changes of all states after the part f of a step: Horner's scheme in f^2, even and odd terms side by side, so that few
+ * wait for each other.
+ */
+static void changes_after(const mct_motion *motion, mct_real f, mct_real *change)
+{
+    const mct_real square = f * f;
+    for (int i = 0; i < MCT_MOTION_STATES; i++) {
+        mct_real even = motion->term[MCT_MOTION_TERMS - 1][i];
+        mct_real odd = motion->term[MCT_MOTION_TERMS - 2][i];
+        for (int n = MCT_MOTION_TERMS - 3; n > 0; n -= 2) {
+            even = motion->term[n][i] + square * even;
+            odd = motion->term[n - 1][i] + square * odd;
+        }
+        even = motion->term[0][i] + square * even;
+        change[i] = f * (even + f * odd);
+    }
+}
+
 /* One tick further along the step that the stride is in, or on a new one. */
 static void advance_stride(mct_plant *plant, bool is_new)
 {
     mct_stride *stride = &plant->stride;
-    const mct_motion *motion = &stride->motion;
+    mct_real change[MCT_MOTION_STATES];
     if (is_new || stride->gone == 0 || stride->gone == stride->ticks) {
         stride->start = plant->state;
         stride->gone = 0;
@@ -144,15 +163,14 @@ static void advance_stride(mct_plant *plant, bool is_new)
                               &stride->motion);
     }
     stride->gone++;
-    const mct_real part = (mct_real)stride->gone / (mct_real)stride->ticks;
-    plant->state = stride->start;
+    changes_after(&stride->motion, (mct_real)stride->gone / (mct_real)stride->ticks, change);
     for (int i = 0; i < plant->states; i++) {
-        mct_real change = 0;
-        for (int n = MCT_MOTION_TERMS - 1; n >= 0; n--) {
-            change = (change + motion->term[i][n]) * part;
-        }
-        plant->state.c[i] += motion->remainder * change;
-        mct_add_compensated(&plant->state.x[i], &plant->state.c[i], change);
+        plant->state.x[i] = stride->start.x[i];
+        plant->state.c[i] = stride->start.c[i] + stride->motion.remainder * change[i];
+        mct_add_compensated(&plant->state.x[i], &plant->state.c[i], change[i]);
+    }
+    for (int i = 0; i < plant->system->coordinate_count; i++) {
+        plant->state.turns[i] = stride->start.turns[i];
     }
 }
 

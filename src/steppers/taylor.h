@@ -150,14 +150,14 @@ MCT_INLINE void mct_taylor_motion(mct_series_of series, const void *constants, m
     series(constants, effects, ORDER, state->x, u, rates);
     for (int i = 0; i < n; i++) {
         for (int k = 0; k <= ORDER; k++) {
-            motion->term[i][k] = step.h * mct_series_share(k) * rates[i][k];
+            motion->term[k][i] = step.h * mct_series_share(k) * rates[i][k];
         }
     }
     for (int i = n; i < mct_entries(effects, n); i++) {
         for (int k = 0; k < ORDER; k++) {
-            motion->term[i][k] = rates[i - n][k + 1];
+            motion->term[k][i] = rates[i - n][k + 1];
         }
-        motion->term[i][ORDER] = 0;
+        motion->term[ORDER][i] = 0;
     }
     motion->remainder = step.remainder;
 }
