@@ -539,20 +539,7 @@ MCT_INLINE bool stays_away(const constants_t *k, unsigned effects, const mct_rea
     return speed < slow && h_square * (16 * speed + 4 * fall) + 4 * couple < 1;
 }
 
-/* Term n of a b, and of a a. */
-MCT_INLINE mct_real product(const mct_real *a, const mct_real *b, int n)
-{
-    mct_real sum = MCT_NOTHING;
-    MCT_UNROLL
-    for (int j = n - 1; j > 0; j--) {
-        sum += a[j] * b[n - j];
-    }
-    if (n > 0) {
-        sum += a[n] * b[0];
-    }
-    return sum + a[0] * b[n];
-}
-
+/* Term n of a a: half the products of mct_series_product. */
 MCT_INLINE mct_real square(const mct_real *a, int n)
 {
     mct_real half = MCT_NOTHING;
@@ -613,9 +600,9 @@ MCT_INLINE void polar_taylor(const constants_t *k, unsigned effects, int order, 
         }
         if (effects & MCT_GRAVITY) {
             radial += along[n];
-            torque += product(r, across, n);
-            along[n + 1] = share * product(w, across, n);
-            across[n + 1] = -share * product(w, along, n);
+            torque += mct_series_product(r, across, n);
+            along[n + 1] = share * mct_series_product(w, across, n);
+            across[n + 1] = -share * mct_series_product(w, along, n);
         }
         mct_real carried = MCT_NOTHING; /* of (r^2 w) but w itself */
         MCT_UNROLL
