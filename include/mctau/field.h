@@ -7,6 +7,7 @@
 #define MCTAU_FIELD_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 typedef enum {
     MCT_FIELD_REAL,    /**< stored as double */
@@ -28,12 +29,17 @@ typedef struct {
     const char *const *choices; /**< NULL-terminated names of a choice; NULL otherwise */
     size_t
         offset; /**< where the value lies in mct_scene; 0 in tables of a system, which are stored by index */
+    uint32_t effects; /**< of a coefficient: while none of them is on, nothing reads it; 0: read always */
 } mct_field;
 
 /** A real quantity of a system: no choices, stored by its index in the table. */
-#define MCT_QUANTITY(name, unit, minimum, maximum, standard, doc)                        \
-    {                                                                                    \
-        (name), (unit), (doc), MCT_FIELD_REAL, (minimum), (maximum), (standard), NULL, 0 \
+#define MCT_QUANTITY(name, unit, minimum, maximum, standard, doc) \
+    MCT_COEFFICIENT(0, name, unit, minimum, maximum, standard, doc)
+
+/** One that is read while one of the effects is on. */
+#define MCT_COEFFICIENT(effects, name, unit, minimum, maximum, standard, doc)                       \
+    {                                                                                               \
+        (name), (unit), (doc), MCT_FIELD_REAL, (minimum), (maximum), (standard), NULL, 0, (effects) \
     }
 
 #endif

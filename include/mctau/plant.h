@@ -29,6 +29,7 @@ typedef struct {
     int32_t entries;  /**< of the state that the kernel uses: the states, and perhaps the time behind them */
     int32_t substeps; /**< steps per tick */
     mct_real bound;   /**< largest input [V]; without saturation the largest finite number */
+    mct_real drop;    /**< of the current's bound through the armature [V]; read by MCT_SATURATION_CURRENT */
     mct_real input;   /**< as applied over the last tick */
     mct_state state;
     uint64_t tick;

@@ -61,6 +61,8 @@ typedef struct mct_scene {
     /* [parameters], [effects], [initial]: by the system's descriptor */
     double parameters[MCT_MAX_PARAMETERS];
     mct_list lists[MCT_MAX_LISTS]; /**< of rows, one behind the other: mct_system.lists */
+    /** Which keys of [parameters] were given, in the order of the table: bit i is key i, the lists last. */
+    uint32_t given;
     uint32_t effects;
     double initial[MCT_MAX_STATES];
     /* [controller], [weights] */
@@ -192,7 +194,8 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why);
 
 /**
- * What a user should be told of a scene that is well: a quaternion whose length is not 1 and is made so.
+ * What a user should be told of a scene that is well: a quaternion whose length is not 1 and is made so; a coefficient
+ * that is given while all effects that read it are off.
  * @param number  0 for the first note
  * @param note    written: one sentence, "table.key: ..."
  * @return false when there are no more

@@ -82,6 +82,7 @@ typedef enum {
 typedef struct {
     const char *name;
     const char *doc;
+    uint32_t effects; /**< while none of them is on, nothing reads the list; 0: read always */
     int column_count;
     const mct_field *columns; /**< what the numbers of a row are; a choice is given by its name */
     int fewest_rows;
@@ -129,30 +130,40 @@ typedef struct {
 } mct_coordinate;
 
 /** The three keys of an encoder, as MCT_ENCODER("arm", "turn", "1/turn", 4, 4096, "the arm"). */
-#define MCT_ENCODER(name, per, unit, fewest, standard, what)                                                 \
-    .encoder =                                                                                               \
-        {name "_counts_per_" per, unit, "encoder of " what, MCT_FIELD_REAL, fewest, 1e9, standard, NULL, 0}, \
-    .encoder_node = {name "_node",                                                                           \
-                     "",                                                                                     \
-                     "drive that reads the encoder of " what                                                 \
-                     "; -1: the motor's where it can, else the next number",                                 \
-                     MCT_FIELD_INTEGER,                                                                      \
-                     -1,                                                                                     \
-                     63,                                                                                     \
-                     -1,                                                                                     \
-                     NULL,                                                                                   \
-                     0},                                                                                     \
-    .encoder_ratio = MCT_QUANTITY(name "_ratio", "", -1e4, 1e4, 1,                                           \
-                                  "turns of the drive's encoder per " per " of " what                        \
+#define MCT_ENCODER(name, per, unit, fewest, standard, what)                          \
+    .encoder = {name "_counts_per_" per,                                              \
+                unit,                                                                 \
+                "encoder of " what,                                                   \
+                MCT_FIELD_REAL,                                                       \
+                fewest,                                                               \
+                1e9,                                                                  \
+                standard,                                                             \
+                NULL,                                                                 \
+                0,                                                                    \
+                0},                                                                   \
+    .encoder_node = {name "_node",                                                    \
+                     "",                                                              \
+                     "drive that reads the encoder of " what                          \
+                     "; -1: the motor's where it can, else the next number",          \
+                     MCT_FIELD_INTEGER,                                               \
+                     -1,                                                              \
+                     63,                                                              \
+                     -1,                                                              \
+                     NULL,                                                            \
+                     0,                                                               \
+                     0},                                                              \
+    .encoder_ratio = MCT_QUANTITY(name "_ratio", "", -1e4, 1e4, 1,                    \
+                                  "turns of the drive's encoder per " per " of " what \
                                   "; negative: mounted the other way round")
 
 /** What a controller and hardware have to know of a system with a motor. Each of its coordinates has an encoder. */
 typedef struct {
-    int driven_coordinate;    /**< the one that the motor acts on */
-    int upright_coordinate;   /**< the angle that is zero upright */
-    int supply_parameter;     /**< index of the supply voltage [V] */
-    int resistance_parameter; /**< of the motor's armature [ohm] */
-    int inductance_parameter; /**< of the motor's armature [H] */
+    int driven_coordinate;       /**< the one that the motor acts on */
+    int upright_coordinate;      /**< the angle that is zero upright */
+    int supply_parameter;        /**< index of the supply voltage [V] */
+    int current_limit_parameter; /**< of the drive [A] */
+    int resistance_parameter;    /**< of the motor's armature [ohm] */
+    int inductance_parameter;    /**< of the motor's armature [H] */
     /** Accelerations alone, for observers; coulomb is ignored, the motor taken as quasi-static unless off. */
     void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
                        mct_real *a);

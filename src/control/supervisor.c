@@ -55,7 +55,7 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene)
     if (scene->effects & MCT_MOTOR) {
         const double supply = scene->parameters[system->actuation->supply_parameter];
         supervisor->steps_per_volt = supervisor->observed ? MCT_STEPS_PER_VOLT : 0;
-        if (scene->effects & MCT_SATURATION) {
+        if (scene->effects & MCT_SATURATION_VOLTAGE) {
             const double whole = (double)(int64_t)(supply * MCT_STEPS_PER_VOLT + 1e-6);
             supervisor->limit =
                 supervisor->observed ? (mct_real)whole / MCT_STEPS_PER_VOLT : (mct_real)supply;

@@ -121,11 +121,16 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
         mct_message_add(why, " has no series to hand");
         return MCT_ERROR_UNSUITED;
     }
-    const bool bounded = (plant->effects & MCT_SATURATION) && (plant->effects & MCT_MOTOR);
+    const bool bounded = (plant->effects & MCT_SATURATION_VOLTAGE) && (plant->effects & MCT_MOTOR);
     plant->substeps = scene->substeps;
     plant->stride.ticks = scene->stride;
     plant->bound =
         bounded ? (mct_real)scene->parameters[plant->system->actuation->supply_parameter] : MCT_REAL_MAX;
+    if (plant->effects & MCT_SATURATION_CURRENT) {
+        const mct_actuation *actuation = plant->system->actuation;
+        plant->drop = (mct_real)(scene->parameters[actuation->current_limit_parameter] *
+                                 scene->parameters[actuation->resistance_parameter]);
+    }
     plant->states = mct_state_count(scene);
     plant->entries = plant->states + (plant->system->is_timed ? 1 : 0);
     mct_state_set(plant->system, plant->states, scene->initial, &plant->state);
@@ -174,11 +179,25 @@ static void advance_stride(mct_plant *plant, bool is_new)
     }
 }
 
+/*
+ * The voltage that a drive gives when it bounds its current: one that drives no more than that through the motor at
+ * its present speed.
+ */
+static mct_real within_current(const mct_plant *plant, mct_real voltage)
+{
+    const mct_actuation *actuation = plant->system->actuation;
+    const mct_motor *motor = actuation->motor(&plant->constants);
+    const int rate = plant->system->coordinate_count + actuation->driven_coordinate;
+    const mct_real emf = motor->emf * plant->state.x[rate];
+    return emf + mct_clamp(voltage - emf, plant->drop);
+}
+
 void mct_plant_step(mct_plant *plant, mct_real input)
 {
     const mct_real before = plant->input;
     if (mct_finite(input)) {
-        plant->input = mct_clamp(input, plant->bound);
+        const bool is_driven = (plant->effects & MCT_SATURATION_CURRENT) && (plant->effects & MCT_MOTOR);
+        plant->input = mct_clamp(is_driven ? within_current(plant, input) : input, plant->bound);
     } else {
         plant->rejected_inputs++;
     }

@@ -577,11 +577,50 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     return status;
 }
 
-bool mct_scene_note(const mct_scene *scene, int number, mct_message *note)
+/* "viscous = false" or "motor = off", of all effects in a mask */
+static void add_switched_off(mct_message *note, const mct_system *system, uint32_t mask)
 {
-    const mct_system *const system = mct_systems[scene->system];
+    int count = 0;
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        const mct_effect *const effect = &mct_effects[i];
+        if (!(effect->mask & mask & system->effects)) {
+            continue;
+        }
+        mct_message_add(note, count++ > 0 ? " and effects." : "effects.");
+        mct_message_add(note, effect->name);
+        mct_message_add(note, effect->choices == NULL || effect->bits[1] & mask ? " off" : " not ");
+        if (effect->choices != NULL && !(effect->bits[1] & mask)) {
+            mct_message_add(note, effect->choices[2]);
+        }
+    }
+}
+
+/* The number-th coefficient that is given in vain. */
+static bool note_idle_coefficient(const mct_scene *scene, const mct_system *system, int number,
+                                  mct_message *note)
+{
+    for (int i = 0; i < mct_key_count(MCT_TABLE_PARAMETERS, system); i++) {
+        const mct_scene_key key = mct_key_at(MCT_TABLE_PARAMETERS, system, i);
+        const uint32_t readers = key.rows != NULL ? key.rows->effects : key.field.effects;
+        if (!(scene->given & (UINT32_C(1) << i)) || readers == 0 ||
+            (readers & mct_scene_effects(scene)) != 0 || number-- > 0) {
+            continue;
+        }
+        mct_message_clear(note);
+        mct_message_add(note, "parameters.");
+        mct_message_add(note, key.field.name);
+        mct_message_add(note, ": given with ");
+        add_switched_off(note, system, readers);
+        mct_message_add(note, ": nothing reads it");
+        return true;
+    }
+    return false;
+}
+
+static bool note_quaternion(const mct_scene *scene, const mct_system *system, mct_message *note)
+{
     double square = 0;
-    if (system->attitude == MCT_ATTITUDE_NONE || number > 0) {
+    if (system->attitude == MCT_ATTITUDE_NONE) {
         return false;
     }
     const int first = mct_rate_index(system) - 4;
@@ -596,6 +635,14 @@ bool mct_scene_note(const mct_scene *scene, int number, mct_message *note)
     mct_message_add_number(note, mct_sqrt(square));
     mct_message_add(note, "; it is taken with length 1");
     return true;
+}
+
+bool mct_scene_note(const mct_scene *scene, int number, mct_message *note)
+{
+    const mct_system *const system = mct_systems[scene->system];
+    const bool has_first = note_quaternion(scene, system, note);
+    return (has_first && number == 0) ||
+           note_idle_coefficient(scene, system, number - (has_first ? 1 : 0), note);
 }
 
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why)

@@ -310,11 +310,16 @@ static mct_status refuse_out_of_range(const reader *self, given value, const mct
 
 static mct_status set_choice(reader *self, given value, const mct_scene_key *key)
 {
+    static const char *const switched[] = {"false", "true"}; /* of an override, whose text has no quotes */
     char name[MCT_MAX_TEXT];
-    const size_t length = mct_toml_text(value.entry, name, sizeof name);
+    const bool is_switch = key->effect != NULL && key->effect->is_switch;
+    const bool is_boolean = value.entry->kind == MCT_TOML_BOOLEAN;
+    const size_t length = is_boolean ? 0 : mct_toml_text(value.entry, name, sizeof name);
     const mct_span found = {name, length < sizeof name ? length : sizeof name - 1};
     for (int32_t i = 0; mct_choice_name(&key->field, i) != NULL; i++) {
-        if (!mct_span_is(found, mct_choice_name(&key->field, i))) {
+        const bool is_switched =
+            is_switch && i < 2 && (is_boolean ? value.entry->integer == i : mct_span_is(found, switched[i]));
+        if (!is_switched && !(length > 0 && mct_span_is(found, mct_choice_name(&key->field, i)))) {
             continue;
         }
         if (key->effect != NULL && (key->effect->bits[i] & ~self->system->effects)) {
@@ -461,7 +466,10 @@ static mct_status set_value(reader *self, given value, const mct_scene_key *key)
         mct_key_set(&self->scene, key, (double)entry->integer);
         return MCT_OK;
     case MCT_FIELD_CHOICE:
-        return entry->kind == MCT_TOML_TEXT ? set_choice(self, value, key) : refuse_type(self, value, key);
+        return entry->kind == MCT_TOML_TEXT ||
+                       (entry->kind == MCT_TOML_BOOLEAN && key->effect != NULL && key->effect->is_switch)
+                   ? set_choice(self, value, key)
+                   : refuse_type(self, value, key);
     case MCT_FIELD_TEXT:
         return entry->kind == MCT_TOML_TEXT ? set_text(self, value, key) : refuse_type(self, value, key);
     case MCT_FIELD_LIST:
@@ -533,6 +541,23 @@ static mct_status set_vector(reader *self, given value, int table)
     return set_components(self, value, table, value.entry, &number);
 }
 
+/* Whether what is written sets a key or a part of it: it is its name, or that of its vector, or of a component. */
+static bool gives(mct_span written, mct_span key)
+{
+    return mct_span_equal(written, key) || is_component(written, key) || is_component(key, written);
+}
+
+/* Remembers which parameters are given. */
+static void note_given(reader *self, int table, mct_span written)
+{
+    for (int i = 0; table == MCT_TABLE_PARAMETERS && i < mct_key_count(table, self->system); i++) {
+        const mct_scene_key key = mct_key_at(table, self->system, i);
+        if (gives(written, mct_text_span(key.field.name))) {
+            self->scene.given |= UINT32_C(1) << i;
+        }
+    }
+}
+
 static mct_status set_entry(reader *self, given value)
 {
     mct_scene_key key;
@@ -540,6 +565,7 @@ static mct_status set_entry(reader *self, given value)
     if (table < 0) {
         return refuse_table(self, value.origin, value.entry->line, value.entry->table);
     }
+    note_given(self, table, value.entry->key);
     if (find_key(table, self->system, value.entry->key, &key)) {
         return set_value(self, value, &key);
     }
@@ -570,12 +596,6 @@ static mct_status read_override(const reader *self, const mct_override *given_ov
         return MCT_OK;
     }
     return mct_toml_read_value(given_override->origin, entry, self->why);
-}
-
-/* Whether what is written sets a key or a part of it: it is its name, or that of its vector, or of a component. */
-static bool gives(mct_span written, mct_span key)
-{
-    return mct_span_equal(written, key) || is_component(written, key) || is_component(key, written);
 }
 
 /* The last value given for a key, NULL when none is; an override is split into `storage`. */
@@ -714,6 +734,23 @@ static mct_status refuse_idle_keys(const reader *self)
     return MCT_OK;
 }
 
+/* A bound of the motor's voltage, asked for where there is no motor. */
+static mct_status refuse_idle_saturation(const reader *self)
+{
+    mct_toml_entry storage;
+    const given value = find_given(self, "effects", "saturation", &storage);
+    if (value.entry == NULL || !(self->scene.effects & MCT_SATURATION) || (self->scene.effects & MCT_MOTOR)) {
+        return MCT_OK;
+    }
+    begin_key(self, value);
+    mct_message_add(self->why, "found ");
+    add_shown(self->why, value.entry->source);
+    mct_message_add(self->why,
+                    " with effects.motor = off, which excludes it: a force or torque has no supply; "
+                    "allowed off, or a motor");
+    return MCT_ERROR_UNSUITED;
+}
+
 static mct_status examine(const reader *self)
 {
     mct_blame blame;
@@ -753,6 +790,7 @@ mct_status mct_scene_read(const char *text, size_t length, const char *origin, c
             self.scene.stepper = mct_best_stepper(&self.scene);
         }
         status = refuse_idle_keys(&self);
+        status = status != MCT_OK ? status : refuse_idle_saturation(&self);
     }
     status = status != MCT_OK ? status : examine(&self);
     if (status == MCT_OK) {

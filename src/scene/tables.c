@@ -7,29 +7,29 @@
 /* --- the fixed tables --- */
 
 #define PLACE(member) offsetof(mct_scene, member)
-#define REAL(name, unit, minimum, maximum, standard, member, doc)                        \
-    {                                                                                    \
-        name, unit, doc, MCT_FIELD_REAL, minimum, maximum, standard, NULL, PLACE(member) \
-    }
-#define INTEGER(name, unit, minimum, maximum, standard, member, doc)                        \
+#define REAL(name, unit, minimum, maximum, standard, member, doc)                           \
     {                                                                                       \
-        name, unit, doc, MCT_FIELD_INTEGER, minimum, maximum, standard, NULL, PLACE(member) \
+        name, unit, doc, MCT_FIELD_REAL, minimum, maximum, standard, NULL, PLACE(member), 0 \
     }
-#define BOOLEAN(name, standard, member, doc)                                  \
-    {                                                                         \
-        name, "", doc, MCT_FIELD_BOOLEAN, 0, 1, standard, NULL, PLACE(member) \
+#define INTEGER(name, unit, minimum, maximum, standard, member, doc)                           \
+    {                                                                                          \
+        name, unit, doc, MCT_FIELD_INTEGER, minimum, maximum, standard, NULL, PLACE(member), 0 \
     }
-#define CHOICE(name, choices, standard, member, doc)                            \
-    {                                                                           \
-        name, "", doc, MCT_FIELD_CHOICE, 0, 0, standard, choices, PLACE(member) \
+#define BOOLEAN(name, standard, member, doc)                                     \
+    {                                                                            \
+        name, "", doc, MCT_FIELD_BOOLEAN, 0, 1, standard, NULL, PLACE(member), 0 \
     }
-#define TEXT(name, member, doc)                                                \
-    {                                                                          \
-        name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member) \
+#define CHOICE(name, choices, standard, member, doc)                               \
+    {                                                                              \
+        name, "", doc, MCT_FIELD_CHOICE, 0, 0, standard, choices, PLACE(member), 0 \
     }
-#define LIST(name, unit, minimum, maximum, member, doc)                           \
+#define TEXT(name, member, doc)                                                   \
     {                                                                             \
-        name, unit, doc, MCT_FIELD_LIST, minimum, maximum, 0, NULL, PLACE(member) \
+        name, "", doc, MCT_FIELD_TEXT, 0, MCT_MAX_TEXT, 0, NULL, PLACE(member), 0 \
+    }
+#define LIST(name, unit, minimum, maximum, member, doc)                              \
+    {                                                                                \
+        name, unit, doc, MCT_FIELD_LIST, minimum, maximum, 0, NULL, PLACE(member), 0 \
     }
 
 #define LONGEST       1e7 /* [s] */

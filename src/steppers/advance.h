@@ -47,7 +47,7 @@ MCT_INLINE void mct_advance(mct_derivative increments, mct_derivative friction, 
     }
     for (int32_t k = 0; k < steps; k++) {
         increments(constants, effects, x, input, dx);
-        if (effects & MCT_COULOMB) {
+        if (effects & MCT_COULOMB_MOREAU) {
             friction(constants, effects, x, input, dx);
         }
         MCT_UNROLL

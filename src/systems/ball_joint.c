@@ -30,10 +30,12 @@ enum { N = 3, Q = 0, W = 4 }; /* coordinates; places of quaternion and angular v
 enum { GRAVITY, FRICTION = GRAVITY + 3, PARAMETERS };
 
 static const mct_field parameters[PARAMETERS] = {
-    [GRAVITY] = MCT_QUANTITY("gravity_1", "m/s^2", -1e4, 1e4, 0, "gravitational acceleration, to the right"),
-    [GRAVITY + 1] = MCT_QUANTITY("gravity_2", "m/s^2", -1e4, 1e4, -9.81, "upwards"),
-    [GRAVITY + 2] = MCT_QUANTITY("gravity_3", "m/s^2", -1e4, 1e4, 0, "to the viewer"),
-    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.0002, "viscous friction of the pivot"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity_1", "m/s^2", -1e4, 1e4, 0,
+                                "gravitational acceleration, to the right"),
+    [GRAVITY + 1] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity_2", "m/s^2", -1e4, 1e4, -9.81, "upwards"),
+    [GRAVITY + 2] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity_3", "m/s^2", -1e4, 1e4, 0, "to the viewer"),
+    [FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.0002, "viscous friction of the pivot"),
 };
 
 /* A top on its tip: three balls on a ring, 0.2 m along its second axis. */

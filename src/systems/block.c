@@ -54,17 +54,21 @@ enum {
 
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 1, "of the block"),
-    [STATIC] =
-        MCT_QUANTITY("static_coefficient", "", 0, 1e3, 0.6, "of friction at rest; at least the dynamic one"),
-    [DYNAMIC] = MCT_QUANTITY("dynamic_coefficient", "", 0, 1e3, 0.5, "of friction in motion"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [STATIC] = MCT_COEFFICIENT(MCT_COULOMB, "static_coefficient", "", 0, 1e3, 0.6,
+                               "of friction at rest; at least the dynamic one"),
+    [DYNAMIC] = MCT_COEFFICIENT(MCT_COULOMB, "dynamic_coefficient", "", 0, 1e3, 0.5, "of friction in motion"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
     [SLOPE] = MCT_QUANTITY("slope", "rad", -1.57, 1.57, 0, "of the plane, upwards with the position"),
-    [FORCE] = MCT_QUANTITY("force", "N", -1e9, 1e9, 0, "along the plane, constant"),
-    [FORCE_RAMP] = MCT_QUANTITY("force_ramp", "N/s", -1e9, 1e9, 0, "growth of the force"),
-    [FORCE_AMPLITUDE] = MCT_QUANTITY("force_amplitude", "N", -1e9, 1e9, 0, "of the force's sine in time"),
-    [FORCE_FREQUENCY] = MCT_QUANTITY("force_frequency", "rad/s", 0, 1e6, 1, "of the force's sine in time"),
-    [SPRING] = MCT_QUANTITY("spring", "N/m", 0, 1e9, 100, "stiffness of the spring, at rest at position 0"),
-    [BELT_SPEED] = MCT_QUANTITY("belt_speed", "m/s", -1e4, 1e4, 0, "of the plane's surface, along the plane"),
+    [FORCE] = MCT_COEFFICIENT(MCT_FORCING, "force", "N", -1e9, 1e9, 0, "along the plane, constant"),
+    [FORCE_RAMP] = MCT_COEFFICIENT(MCT_FORCING, "force_ramp", "N/s", -1e9, 1e9, 0, "growth of the force"),
+    [FORCE_AMPLITUDE] =
+        MCT_COEFFICIENT(MCT_FORCING, "force_amplitude", "N", -1e9, 1e9, 0, "of the force's sine in time"),
+    [FORCE_FREQUENCY] =
+        MCT_COEFFICIENT(MCT_FORCING, "force_frequency", "rad/s", 0, 1e6, 1, "of the force's sine in time"),
+    [SPRING] = MCT_COEFFICIENT(MCT_SPRING, "spring", "N/m", 0, 1e9, 100,
+                               "stiffness of the spring, at rest at position 0"),
+    [BELT_SPEED] = MCT_COEFFICIENT(MCT_COULOMB, "belt_speed", "m/s", -1e4, 1e4, 0,
+                                   "of the plane's surface, along the plane"),
 };
 
 static const mct_coordinate coordinates[1] = {
@@ -219,7 +223,7 @@ MCT_INLINE bool is_at_rest(const constants_t *k, mct_real relative)
 /* Corrects the increments of a step for friction: what comes to rest on the belt has exactly its speed. */
 MCT_INLINE void clamp(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
 {
-    if (!(effects & MCT_COULOMB)) {
+    if (!(effects & MCT_COULOMB_MOREAU)) {
         return;
     }
     const mct_real relative = x[1] - k->belt_speed;
@@ -573,7 +577,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[0][2] = mct_hyperdual_constant(0);
 }
 
-#define SWITCHES MCT_GRAVITY, MCT_COULOMB, MCT_SPRING, MCT_FORCING
+#define SWITCHES MCT_GRAVITY, MCT_COULOMB_MOREAU, MCT_SPRING, MCT_FORCING
 static const uint32_t switches[] = {SWITCHES, 0};
 
 MCT_KERNELS_4(seed, k->step.remainder, 1, SWITCHES,
@@ -606,8 +610,8 @@ const mct_system mct_block = {
     .parameters = parameters,
     .phases = phases,
     .input_without_motor = &force_field,
-    .effects = MCT_GRAVITY | MCT_COULOMB | MCT_SPRING | MCT_FORCING,
-    .standard_effects = MCT_GRAVITY | MCT_COULOMB | MCT_FORCING,
+    .effects = MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_SPRING | MCT_FORCING,
+    .standard_effects = MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING,
     .particle_count = 1,
     .particle_names = particle_names,
     .prepare = prepare,

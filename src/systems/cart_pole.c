@@ -49,6 +49,7 @@ enum {
     GEAR_RATIO,
     PULLEY_RADIUS,
     SUPPLY_VOLTAGE,
+    CURRENT_LIMIT,
     PARAMETERS
 };
 
@@ -57,21 +58,29 @@ static const mct_field parameters[PARAMETERS] = {
                                "cart, with the motor's rotor as seen through the gear"),
     [POLE_MASS] = MCT_QUANTITY("pole_mass", "kg", 1e-6, 1e6, 0.175, "point mass at the end of the rod"),
     [POLE_LENGTH] = MCT_QUANTITY("pole_length", "m", 1e-4, 1e4, 0.434, "pivot to point mass"),
-    [CART_FRICTION] = MCT_QUANTITY("cart_friction", "N s/m", 0, 1e6, 4.3, "viscous friction of the cart"),
-    [POLE_FRICTION] = MCT_QUANTITY("pole_friction", "N m s", 0, 1e6, 0.0024, "viscous friction of the pivot"),
-    [CART_COULOMB] = MCT_QUANTITY("cart_coulomb", "N", 0, 1e6, 0, "dry friction of the cart"),
-    [POLE_COULOMB] = MCT_QUANTITY("pole_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
-    [TORQUE_CONSTANT] = MCT_QUANTITY("torque_constant", "N m/A", 0, 1e4, 0.00767, "motor torque per current"),
-    [BACK_EMF_CONSTANT] =
-        MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.00767, "motor voltage per speed"),
-    [RESISTANCE] = MCT_QUANTITY("resistance", "ohm", 0, 1e6, 2.6, "armature"),
-    [INDUCTANCE] =
-        MCT_QUANTITY("inductance", "H", 0, 1e3, 0.00018, "armature; read by motor = \"inductive\""),
-    [GEAR_RATIO] = MCT_QUANTITY("gear_ratio", "", 1e-3, 1e4, 3.71, "motor turns per pulley turn"),
-    [PULLEY_RADIUS] =
-        MCT_QUANTITY("pulley_radius", "m", 1e-5, 1e3, 0.00635, "pulley or pinion that drives the cart"),
-    [SUPPLY_VOLTAGE] = MCT_QUANTITY("supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
+    [CART_FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "cart_friction", "N s/m", 0, 1e6, 4.3, "viscous friction of the cart"),
+    [POLE_FRICTION] = MCT_COEFFICIENT(MCT_VISCOUS, "pole_friction", "N m s", 0, 1e6, 0.0024,
+                                      "viscous friction of the pivot"),
+    [CART_COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "cart_coulomb", "N", 0, 1e6, 0, "dry friction of the cart"),
+    [POLE_COULOMB] =
+        MCT_COEFFICIENT(MCT_COULOMB, "pole_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [TORQUE_CONSTANT] =
+        MCT_COEFFICIENT(MCT_MOTOR, "torque_constant", "N m/A", 0, 1e4, 0.00767, "motor torque per current"),
+    [BACK_EMF_CONSTANT] = MCT_COEFFICIENT(MCT_MOTOR, "back_emf_constant", "V s/rad", 0, 1e4, 0.00767,
+                                          "motor voltage per speed"),
+    [RESISTANCE] = MCT_COEFFICIENT(MCT_MOTOR, "resistance", "ohm", 0, 1e6, 2.6, "armature"),
+    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.00018,
+                                   "armature; read by motor = \"inductive\""),
+    [GEAR_RATIO] =
+        MCT_COEFFICIENT(MCT_MOTOR, "gear_ratio", "", 1e-3, 1e4, 3.71, "motor turns per pulley turn"),
+    [PULLEY_RADIUS] = MCT_COEFFICIENT(MCT_MOTOR, "pulley_radius", "m", 1e-5, 1e3, 0.00635,
+                                      "pulley or pinion that drives the cart"),
+    [SUPPLY_VOLTAGE] =
+        MCT_COEFFICIENT(MCT_MOTOR, "supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
+    [CURRENT_LIMIT] = MCT_COEFFICIENT(MCT_SATURATION_CURRENT, "current_limit", "A", 1e-6, 1e4, 3,
+                                      "of the drive, either way; read by saturation = \"current\""),
 };
 
 static const mct_coordinate coordinates[2] = {
@@ -515,6 +524,7 @@ static const mct_actuation actuation = {
     .driven_coordinate = 0,
     .upright_coordinate = 1,
     .supply_parameter = SUPPLY_VOLTAGE,
+    .current_limit_parameter = CURRENT_LIMIT,
     .resistance_parameter = RESISTANCE,
     .inductance_parameter = INDUCTANCE,
     .accelerate = accelerate,
@@ -531,8 +541,8 @@ const mct_system mct_cart_pole = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &force_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR | MCT_SATURATION,
-    .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC | MCT_SATURATION,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_MOTOR | MCT_SATURATION,
+    .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC | MCT_SATURATION_VOLTAGE,
     .particle_count = 2,
     .particle_names = particle_names,
     .actuation = &actuation,

@@ -24,7 +24,7 @@ static const mct_field parameters[PARAMETERS] = {
     [TARGET_1] = MCT_QUANTITY("target_1", "m", -1e6, 1e6, 0.3, "of the tip, to the right of the base"),
     [TARGET_2] = MCT_QUANTITY("target_2", "m", -1e6, 1e6, 0.4, "above the base"),
     [METHOD] = {"method", "", "how an update finds the angles' change", MCT_FIELD_CHOICE, 0, 0,
-                MCT_CHAIN_RIDGE, methods, 0},
+                MCT_CHAIN_RIDGE, methods, 0, 0},
     [GAIN] = MCT_QUANTITY("gain", "1/m^2", 0, 1e9, 0, "of transpose; 0: the best one of each update"),
     [RIDGE] = MCT_QUANTITY("ridge", "m^2", 0, 1e9, 0, "of ridge, its damping; 0: from the error"),
     [LARGEST_STEP] = MCT_QUANTITY("largest_step", "rad", 1e-6, 1e3, 0.5, "of an angle in an update"),

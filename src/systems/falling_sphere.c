@@ -38,11 +38,14 @@ enum { RADIUS, DENSITY, FLUID_DENSITY, FLUID_VISCOSITY, DRAG_COEFFICIENT, GRAVIT
 static const mct_field parameters[PARAMETERS] = {
     [RADIUS] = MCT_QUANTITY("radius", "m", 1e-7, 1e3, 1e-3, "of the sphere"),
     [DENSITY] = MCT_QUANTITY("density", "kg/m^3", 1e-3, 1e5, 7850, "of the sphere"),
-    [FLUID_DENSITY] = MCT_QUANTITY("fluid_density", "kg/m^3", 0, 1e5, 1260, "of the fluid"),
-    [FLUID_VISCOSITY] = MCT_QUANTITY("fluid_viscosity", "Pa s", 0, 1e6, 1.42, "of the fluid, dynamic"),
-    [DRAG_COEFFICIENT] =
-        MCT_QUANTITY("drag_coefficient", "", 0, 1e3, 0.47, "of the sphere, by its cross-section"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [FLUID_DENSITY] =
+        MCT_COEFFICIENT(MCT_BUOYANCY | MCT_DRAG, "fluid_density", "kg/m^3", 0, 1e5, 1260, "of the fluid"),
+    [FLUID_VISCOSITY] =
+        MCT_COEFFICIENT(MCT_STOKES, "fluid_viscosity", "Pa s", 0, 1e6, 1.42, "of the fluid, dynamic"),
+    [DRAG_COEFFICIENT] = MCT_COEFFICIENT(MCT_DRAG, "drag_coefficient", "", 0, 1e3, 0.47,
+                                         "of the sphere, by its cross-section"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY | MCT_BUOYANCY, "gravity", "m/s^2", 0, 1e4, 9.81,
+                                "gravitational acceleration"),
 };
 
 static const mct_coordinate coordinates[1] = {

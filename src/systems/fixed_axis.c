@@ -18,8 +18,9 @@
 
 enum { AXIS, GRAVITY = AXIS + 3, FRICTION = GRAVITY + 3, COULOMB, PARAMETERS };
 
-#define AXIS_FIELD(name, standard, doc)    MCT_QUANTITY(name, "", -1e6, 1e6, standard, doc)
-#define GRAVITY_FIELD(name, standard, doc) MCT_QUANTITY(name, "m/s^2", -1e4, 1e4, standard, doc)
+#define AXIS_FIELD(name, standard, doc) MCT_QUANTITY(name, "", -1e6, 1e6, standard, doc)
+#define GRAVITY_FIELD(name, standard, doc) \
+    MCT_COEFFICIENT(MCT_GRAVITY, name, "m/s^2", -1e4, 1e4, standard, doc)
 
 static const mct_field parameters[PARAMETERS] = {
     [AXIS] = AXIS_FIELD("axis_1", 0.1, "direction of the axis, of any length but 0; to the right"),
@@ -28,8 +29,9 @@ static const mct_field parameters[PARAMETERS] = {
     [GRAVITY] = GRAVITY_FIELD("gravity_1", 0, "gravitational acceleration, to the right"),
     [GRAVITY + 1] = GRAVITY_FIELD("gravity_2", -9.81, "upwards"),
     [GRAVITY + 2] = GRAVITY_FIELD("gravity_3", 0, "to the viewer"),
-    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.8, "viscous friction of the bearing"),
-    [COULOMB] = MCT_QUANTITY("coulomb", "N m", 0, 1e6, 0, "dry friction of the bearing"),
+    [FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.8, "viscous friction of the bearing"),
+    [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the bearing"),
 };
 
 static const mct_field columns[] = {

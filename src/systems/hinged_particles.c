@@ -132,7 +132,7 @@ void mct_hinged_particles_place(const void *constants, mct_hyperdual time, const
     }
 }
 
-MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB)
+MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
 
 mct_kernel mct_hinged_particles_kernel(int stepper, uint32_t effects)
 {

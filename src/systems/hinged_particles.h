@@ -9,7 +9,7 @@
 #include "mctau/message.h"
 #include "mctau/scene.h"
 
-#define MCT_HINGED_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB)
+#define MCT_HINGED_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU)
 
 /* Bodies with less inertia are refused: the lightest pendulum's [kg m^2], and a part of that about the origin. */
 #define MCT_LEAST_INERTIA       1e-14

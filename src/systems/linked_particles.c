@@ -25,7 +25,7 @@ typedef mct_linked_particles_constants constants_t;
 
 enum { MASS_1, MASS_2, SEPARATION, FORCE_1, FORCE_2 = FORCE_1 + 3, PARAMETERS = FORCE_2 + 3 };
 
-#define FORCE(name, standard, doc) MCT_QUANTITY(name, "N", -1e9, 1e9, standard, doc)
+#define FORCE(name, standard, doc) MCT_COEFFICIENT(MCT_FORCES, name, "N", -1e9, 1e9, standard, doc)
 
 static const mct_field parameters[PARAMETERS] = {
     [MASS_1] = MCT_QUANTITY("mass_1", "kg", 1e-6, 1e6, 1, "particle 1"),

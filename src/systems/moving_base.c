@@ -57,14 +57,21 @@ enum {
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 0.1, "point mass"),
     [LENGTH] = MCT_QUANTITY("length", "m", 1e-4, 1e4, 0.2, "pivot to point mass"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
-    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
-    [BASE_AMPLITUDE_1] = MCT_QUANTITY("base_amplitude_1", "m", 0, 1e4, 0, "of the base to the right"),
-    [BASE_AMPLITUDE_2] = MCT_QUANTITY("base_amplitude_2", "m", 0, 1e4, 0.01, "of the base upwards"),
-    [BASE_FREQUENCY_1] = MCT_QUANTITY("base_frequency_1", "rad/s", 0, 1e6, 300, "of the base to the right"),
-    [BASE_FREQUENCY_2] = MCT_QUANTITY("base_frequency_2", "rad/s", 0, 1e6, 300, "of the base upwards"),
-    [BASE_PHASE_1] = MCT_QUANTITY("base_phase_1", "rad", -1e6, 1e6, 0, "0: the base starts at its far right"),
-    [BASE_PHASE_2] = MCT_QUANTITY("base_phase_2", "rad", -1e6, 1e6, 0, "0: the base starts at its top"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
+    [BASE_AMPLITUDE_1] =
+        MCT_COEFFICIENT(MCT_BASE_MOTION, "base_amplitude_1", "m", 0, 1e4, 0, "of the base to the right"),
+    [BASE_AMPLITUDE_2] =
+        MCT_COEFFICIENT(MCT_BASE_MOTION, "base_amplitude_2", "m", 0, 1e4, 0.01, "of the base upwards"),
+    [BASE_FREQUENCY_1] = MCT_COEFFICIENT(MCT_BASE_MOTION, "base_frequency_1", "rad/s", 0, 1e6, 300,
+                                         "of the base to the right"),
+    [BASE_FREQUENCY_2] =
+        MCT_COEFFICIENT(MCT_BASE_MOTION, "base_frequency_2", "rad/s", 0, 1e6, 300, "of the base upwards"),
+    [BASE_PHASE_1] = MCT_COEFFICIENT(MCT_BASE_MOTION, "base_phase_1", "rad", -1e6, 1e6, 0,
+                                     "0: the base starts at its far right"),
+    [BASE_PHASE_2] = MCT_COEFFICIENT(MCT_BASE_MOTION, "base_phase_2", "rad", -1e6, 1e6, 0,
+                                     "0: the base starts at its top"),
 };
 
 static const mct_coordinate coordinates[1] = {

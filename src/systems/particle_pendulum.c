@@ -18,9 +18,10 @@
 enum { GRAVITY, FRICTION, COULOMB, PARAMETERS };
 
 static const mct_field parameters[PARAMETERS] = {
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
-    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
-    [COULOMB] = MCT_QUANTITY("coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
+    [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
 };
 
 static const mct_field columns[] = {

@@ -24,10 +24,12 @@ enum { MASS, LENGTH, GRAVITY, FRICTION, DRAG, COULOMB, PARAMETERS };
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 0.1, "point mass"),
     [LENGTH] = MCT_QUANTITY("length", "m", 1e-4, 1e4, 0.3, "pivot to point mass"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
-    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
-    [DRAG] = MCT_QUANTITY("drag", "N m s^2", 0, 1e6, 0, "torque of the air by the square of the rate"),
-    [COULOMB] = MCT_QUANTITY("coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
+    [DRAG] = MCT_COEFFICIENT(MCT_DRAG, "drag", "N m s^2", 0, 1e6, 0,
+                             "torque of the air by the square of the rate"),
+    [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
 };
 
 static const mct_coordinate coordinates[1] = {
@@ -90,7 +92,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[0][2] = mct_hyperdual_constant(0);
 }
 
-MCT_HINGE_KERNELS(MCT_KERNELS_4, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB, MCT_DRAG)
+MCT_HINGE_KERNELS(MCT_KERNELS_4, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU, MCT_DRAG)
 
 const mct_system mct_pendulum = {
     .name = "pendulum",
@@ -101,7 +103,7 @@ const mct_system mct_pendulum = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &torque_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_DRAG,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_DRAG,
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS,
     .particle_count = 1,
     .particle_names = particle_names,

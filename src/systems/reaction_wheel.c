@@ -52,6 +52,7 @@ enum {
     RESISTANCE,
     INDUCTANCE,
     SUPPLY_VOLTAGE,
+    CURRENT_LIMIT,
     PARAMETERS
 };
 
@@ -63,18 +64,26 @@ static const mct_field parameters[PARAMETERS] = {
     [ARM_INERTIA] =
         MCT_QUANTITY("arm_inertia", "kg m^2", 0, 1e6, 3.201e-3, "sum of m l^2 of the arm about the pivot"),
     [ARM_MOMENT] = MCT_QUANTITY("arm_moment", "kg m", -1e6, 1e6, 0.025384, "sum of m l of the arm"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
-    [ARM_FRICTION] = MCT_QUANTITY("arm_friction", "N m s", 0, 1e6, 2e-4, "viscous friction of the pivot"),
-    [WHEEL_FRICTION] =
-        MCT_QUANTITY("wheel_friction", "N m s", 0, 1e6, 3e-6, "viscous friction of the wheel's axle"),
-    [ARM_COULOMB] = MCT_QUANTITY("arm_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
-    [WHEEL_COULOMB] = MCT_QUANTITY("wheel_coulomb", "N m", 0, 1e6, 0, "dry friction of the wheel's axle"),
-    [TORQUE_CONSTANT] = MCT_QUANTITY("torque_constant", "N m/A", 0, 1e4, 0.0274, "motor torque per current"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [ARM_FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "arm_friction", "N m s", 0, 1e6, 2e-4, "viscous friction of the pivot"),
+    [WHEEL_FRICTION] = MCT_COEFFICIENT(MCT_VISCOUS, "wheel_friction", "N m s", 0, 1e6, 3e-6,
+                                       "viscous friction of the wheel's axle"),
+    [ARM_COULOMB] =
+        MCT_COEFFICIENT(MCT_COULOMB, "arm_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [WHEEL_COULOMB] =
+        MCT_COEFFICIENT(MCT_COULOMB, "wheel_coulomb", "N m", 0, 1e6, 0, "dry friction of the wheel's axle"),
+    [TORQUE_CONSTANT] =
+        MCT_COEFFICIENT(MCT_MOTOR, "torque_constant", "N m/A", 0, 1e4, 0.0274, "motor torque per current"),
     [BACK_EMF_CONSTANT] =
-        MCT_QUANTITY("back_emf_constant", "V s/rad", 0, 1e4, 0.0274, "motor voltage per speed"),
-    [RESISTANCE] = MCT_QUANTITY("resistance", "ohm", 0, 1e6, 12.1, "armature"),
-    [INDUCTANCE] = MCT_QUANTITY("inductance", "H", 0, 1e3, 0.006, "armature; read by motor = \"inductive\""),
-    [SUPPLY_VOLTAGE] = MCT_QUANTITY("supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
+        MCT_COEFFICIENT(MCT_MOTOR, "back_emf_constant", "V s/rad", 0, 1e4, 0.0274, "motor voltage per speed"),
+    [RESISTANCE] = MCT_COEFFICIENT(MCT_MOTOR, "resistance", "ohm", 0, 1e6, 12.1, "armature"),
+    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.006,
+                                   "armature; read by motor = \"inductive\""),
+    [SUPPLY_VOLTAGE] =
+        MCT_COEFFICIENT(MCT_MOTOR, "supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
+    [CURRENT_LIMIT] = MCT_COEFFICIENT(MCT_SATURATION_CURRENT, "current_limit", "A", 1e-6, 1e4, 0.6,
+                                      "of the drive, either way; read by saturation = \"current\""),
 };
 
 static const mct_coordinate coordinates[2] = {
@@ -506,6 +515,7 @@ static const mct_actuation actuation = {
     .driven_coordinate = 1,
     .upright_coordinate = 0,
     .supply_parameter = SUPPLY_VOLTAGE,
+    .current_limit_parameter = CURRENT_LIMIT,
     .resistance_parameter = RESISTANCE,
     .inductance_parameter = INDUCTANCE,
     .accelerate = accelerate,
@@ -522,8 +532,8 @@ const mct_system mct_reaction_wheel = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &torque_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR | MCT_SATURATION,
-    .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE | MCT_SATURATION,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_MOTOR | MCT_SATURATION,
+    .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE | MCT_SATURATION_VOLTAGE,
     .particle_count = 4,
     .particle_names = particle_names,
     .actuation = &actuation,

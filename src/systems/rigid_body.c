@@ -61,13 +61,14 @@ static const mct_field parameters[PARAMETERS] = {
     [CENTER] = PLACE("1", "of mass, in body axes, when it has no particles"),
     [CENTER + 1] = PLACE("2", "its second coordinate"),
     [CENTER + 2] = PLACE("3", "its third coordinate"),
-    [GRAVITY] = MCT_QUANTITY("gravity_1", "m/s^2", -1e4, 1e4, 0, "gravitational acceleration, to the right"),
-    [GRAVITY + 1] = MCT_QUANTITY("gravity_2", "m/s^2", -1e4, 1e4, -9.81, "upwards"),
-    [GRAVITY + 2] = MCT_QUANTITY("gravity_3", "m/s^2", -1e4, 1e4, 0, "to the viewer"),
-    [DRAG] =
-        MCT_QUANTITY("drag", "N s^2/m^2", 0, 1e6, 0.01, "force of the air by the square of the velocity"),
-    [ANGULAR_DRAG] = MCT_QUANTITY("angular_drag", "N m s^2", 0, 1e6, 1e-5,
-                                  "its couple by the square of the angular velocity"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity_1", "m/s^2", -1e4, 1e4, 0,
+                                "gravitational acceleration, to the right"),
+    [GRAVITY + 1] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity_2", "m/s^2", -1e4, 1e4, -9.81, "upwards"),
+    [GRAVITY + 2] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity_3", "m/s^2", -1e4, 1e4, 0, "to the viewer"),
+    [DRAG] = MCT_COEFFICIENT(MCT_DRAG, "drag", "N s^2/m^2", 0, 1e6, 0.01,
+                             "force of the air by the square of the velocity"),
+    [ANGULAR_DRAG] = MCT_COEFFICIENT(MCT_DRAG, "angular_drag", "N m s^2", 0, 1e6, 1e-5,
+                                     "its couple by the square of the angular velocity"),
 };
 
 /* A racket, three different moments: the least about its handle, axis 1; the largest about axis 3. */
@@ -87,7 +88,7 @@ enum { FRAME, POINT, FORCE = POINT + 3, FORCE_COLUMNS = FORCE + 3 };
 #define FORCE_OF(name, doc) MCT_QUANTITY(name, "N", -1e9, 1e9, 0, doc)
 
 static const mct_field force_columns[FORCE_COLUMNS] = {
-    [FRAME] = {"frame", "", "axes in which the force is constant", MCT_FIELD_CHOICE, 0, 1, 0, frames, 0},
+    [FRAME] = {"frame", "", "axes in which the force is constant", MCT_FIELD_CHOICE, 0, 1, 0, frames, 0, 0},
     [POINT] = POINT_OF("p1", "where it acts, in body axes"),
     [POINT + 1] = POINT_OF("p2", ""),
     [POINT + 2] = POINT_OF("p3", ""),
@@ -108,6 +109,7 @@ static const mct_row_list lists[] = {
                    .standard = racket},
     [FORCES] = {.name = "forces",
                 .doc = "constant forces on points of the body",
+                .effects = MCT_FORCES,
                 .column_count = FORCE_COLUMNS,
                 .columns = force_columns,
                 .fewest_rows = 0,

@@ -66,10 +66,10 @@ static const mct_field parameters[PARAMETERS] = {
     [FORCE] = MCT_QUANTITY("force_1", "N", -1e6, 1e6, 0, "on the mass, along axis 1 of space"),
     [FORCE + 1] = MCT_QUANTITY("force_2", "N", -1e6, 1e6, 0, "along axis 2 of space"),
     [FORCE + 2] = MCT_QUANTITY("force_3", "N", -1e6, 1e6, 0, "along axis 3 of space"),
-    [GRAVITY] =
-        MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration, against axis 2 of space"),
-    [DRAG] = MCT_QUANTITY("drag", "N s^2/m^2", 0, 1e6, 0.01,
-                          "of air at rest in space, by the square of the speed"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81,
+                                "gravitational acceleration, against axis 2 of space"),
+    [DRAG] = MCT_COEFFICIENT(MCT_DRAG, "drag", "N s^2/m^2", 0, 1e6, 0.01,
+                             "of air at rest in space, by the square of the speed"),
 };
 
 #define COORDINATE(name, rate_name, at_start, rate_at_start)                                     \

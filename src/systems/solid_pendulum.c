@@ -36,9 +36,10 @@ static const mct_field parameters[PARAMETERS] = {
     [DENSITY] = MCT_QUANTITY("density", "kg/m^3", 1e-3, 1e5, 2640, "of the box; the source's aluminium"),
     [PIVOT_OFFSET] =
         MCT_QUANTITY("pivot_offset", "m", 0, 1e3, 0.01, "end of the box to axle; at most size_1"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
-    [FRICTION] = MCT_QUANTITY("friction", "N m s", 0, 1e6, 0.2, "viscous friction of the axle"),
-    [COULOMB] = MCT_QUANTITY("coulomb", "N m", 0, 1e6, 0, "dry friction of the axle"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [FRICTION] =
+        MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.2, "viscous friction of the axle"),
+    [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the axle"),
 };
 
 static const mct_coordinate coordinates[1] = {
@@ -125,7 +126,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     }
 }
 
-MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB)
+MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
 
 const mct_system mct_solid_pendulum = {
     .name = "solid_pendulum",
@@ -136,7 +137,7 @@ const mct_system mct_solid_pendulum = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &torque_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU,
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS,
     .particle_count = PARTICLES,
     .particle_names = particle_names,

@@ -43,13 +43,14 @@ enum { MASS, STIFFNESS, REST_LENGTH, LENGTH_FRICTION, ANGLE_FRICTION, GRAVITY, P
 
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 0.5, "ball"),
-    [STIFFNESS] = MCT_QUANTITY("stiffness", "N/m", 0, 1e9, 40, "of the spring"),
-    [REST_LENGTH] = MCT_QUANTITY("rest_length", "m", 0, 1e4, 0.3, "of the spring; 0 in the source"),
-    [LENGTH_FRICTION] =
-        MCT_QUANTITY("length_friction", "N s/m", 0, 1e6, 0.02, "viscous friction along the rod"),
-    [ANGLE_FRICTION] =
-        MCT_QUANTITY("angle_friction", "N m s", 0, 1e6, 0.001, "viscous friction of the pivot"),
-    [GRAVITY] = MCT_QUANTITY("gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
+    [STIFFNESS] = MCT_COEFFICIENT(MCT_SPRING, "stiffness", "N/m", 0, 1e9, 40, "of the spring"),
+    [REST_LENGTH] =
+        MCT_COEFFICIENT(MCT_SPRING, "rest_length", "m", 0, 1e4, 0.3, "of the spring; 0 in the source"),
+    [LENGTH_FRICTION] = MCT_COEFFICIENT(MCT_VISCOUS, "length_friction", "N s/m", 0, 1e6, 0.02,
+                                        "viscous friction along the rod"),
+    [ANGLE_FRICTION] = MCT_COEFFICIENT(MCT_VISCOUS, "angle_friction", "N m s", 0, 1e6, 0.001,
+                                       "viscous friction of the pivot"),
+    [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
 };
 
 static const mct_coordinate coordinates[2] = {

@@ -214,7 +214,8 @@ static void print_evaluations(int system, const char *motor, uint32_t motor_effe
     mct_scene scene;
     mct_plant plant;
     mct_evaluation at;
-    prepare_scene(&scene, system, MCT_STEPPER_LEAP, motor_effect | MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB);
+    prepare_scene(&scene, system, MCT_STEPPER_LEAP,
+                  motor_effect | MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU);
     if (mct_plant_init(&plant, &scene, NULL) != MCT_OK) {
         fail(mct_systems[system]->name, "not accepted");
     }

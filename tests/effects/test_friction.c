@@ -16,7 +16,7 @@ void tearDown(void)
 /* The arm, 45 degrees off upright, its weight of 0.25 N m held by a friction of 0.3 N m. */
 static mct_scene held_arm(int stepper, double friction)
 {
-    mct_scene scene = scene_of(REACTION_WHEEL, stepper, MCT_GRAVITY | MCT_COULOMB);
+    mct_scene scene = scene_of(REACTION_WHEEL, stepper, MCT_GRAVITY | MCT_COULOMB_MOREAU);
     scene.initial[0] = 0.785;
     *parameter_of(&scene, "arm_coulomb") = friction;
     *parameter_of(&scene, "wheel_coulomb") = 1e-3;
@@ -25,7 +25,7 @@ static mct_scene held_arm(int stepper, double friction)
 
 static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void)
 {
-    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB) {
+    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB_MOREAU) {
         const mct_scene scene = held_arm(stepper, 0.3);
         mct_plant plant;
         start_plant(&plant, &scene);
@@ -39,7 +39,7 @@ static void test_an_arm_held_by_dry_friction_does_not_creep_in_1e6_ticks(void)
 
 static void test_an_arm_that_friction_cannot_hold_starts_to_move(void)
 {
-    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB) {
+    FOR_EACH_STEPPER (stepper, REACTION_WHEEL, MCT_GRAVITY | MCT_COULOMB_MOREAU) {
         const mct_scene scene = held_arm(stepper, 0.24);
         mct_plant plant;
         start_plant(&plant, &scene);
@@ -51,8 +51,8 @@ static void test_an_arm_that_friction_cannot_hold_starts_to_move(void)
 /* A cart alone: v^2 / (2 a), a = F / m. The tick in which it stops is off by at most h^2 a / 8. */
 static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_rests(void)
 {
-    FOR_EACH_STEPPER (stepper, CART_POLE, MCT_COULOMB) {
-        mct_scene scene = scene_of(CART_POLE, stepper, MCT_COULOMB);
+    FOR_EACH_STEPPER (stepper, CART_POLE, MCT_COULOMB_MOREAU) {
+        mct_scene scene = scene_of(CART_POLE, stepper, MCT_COULOMB_MOREAU);
         *parameter_of(&scene, "cart_coulomb") = 2;
         *parameter_of(&scene, "pole_mass") = 0.5;
         *parameter_of(&scene, "cart_mass") = 0.5;
@@ -85,7 +85,7 @@ static void test_a_sliding_cart_stops_where_v_squared_over_2_a_says_and_then_res
  */
 static void test_each_half_swing_loses_the_friction_times_its_way(void)
 {
-    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB);
+    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB_MOREAU);
     const double friction = 0.005;
     *parameter_of(&scene, "arm_coulomb") = friction;
     *parameter_of(&scene, "wheel_coulomb") = 10; /* the wheel is locked to the arm */

@@ -209,10 +209,10 @@ static void test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only(
     static const struct {
         uint32_t effects;
         bool bounded;
-    } cases[] = {{MCT_MOTOR_QUASI_STATIC | MCT_SATURATION, true},
-                 {MCT_MOTOR_INDUCTIVE | MCT_SATURATION, true},
+    } cases[] = {{MCT_MOTOR_QUASI_STATIC | MCT_SATURATION_VOLTAGE, true},
+                 {MCT_MOTOR_INDUCTIVE | MCT_SATURATION_VOLTAGE, true},
                  {MCT_MOTOR_QUASI_STATIC, false},
-                 {MCT_SATURATION, false}};
+                 {MCT_SATURATION_VOLTAGE, false}};
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, cases[k].effects);
         *parameter_of(&scene, "supply_voltage") = 7;

@@ -148,7 +148,8 @@ static void test_every_kind_of_value_goes_where_it_belongs(void)
     TEST_ASSERT_EQUAL_DOUBLE(2e-3, scene.dt);
     TEST_ASSERT_EQUAL_STRING("socketcan:can0", scene.hal);
     TEST_ASSERT_EQUAL_DOUBLE(0.25, parameter("pole_mass"));
-    TEST_ASSERT_EQUAL_HEX32(MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR_INDUCTIVE | MCT_SATURATION, scene.effects);
+    TEST_ASSERT_EQUAL_HEX32(MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_MOTOR_INDUCTIVE | MCT_SATURATION_VOLTAGE,
+                            scene.effects);
     const double initial[] = {0, 0.1, -2, 0, 0.5};
     for (int i = 0; i < 5; i++) {
         TEST_ASSERT_EQUAL_DOUBLE(initial[i], scene.initial[i]);

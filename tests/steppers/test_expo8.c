@@ -204,7 +204,7 @@ static void test_expo8_has_no_kernel_with_dry_friction(void)
 {
     for (uint32_t effects = 0; effects < 32; effects++) {
         const bool has = mct_systems[REACTION_WHEEL]->kernel(MCT_STEPPER_EXPO8, effects) != NULL;
-        TEST_ASSERT_EQUAL(!(effects & MCT_COULOMB) && (effects & MCT_MOTOR) != MCT_MOTOR, has);
+        TEST_ASSERT_EQUAL(!(effects & MCT_COULOMB_MOREAU) && (effects & MCT_MOTOR) != MCT_MOTOR, has);
     }
 }
 

@@ -86,10 +86,10 @@ static void test_a_series_is_refused_where_friction_has_a_kink_and_the_message_s
     static const struct {
         const char *system;
         uint32_t effect;
-    } kinks[] = {{"cart_pole", MCT_COULOMB},         {"reaction_wheel", MCT_COULOMB},
-                 {"pendulum", MCT_COULOMB},          {"pendulum", MCT_DRAG},
-                 {"fixed_axis", MCT_COULOMB},        {"solid_pendulum", MCT_COULOMB},
-                 {"particle_pendulum", MCT_COULOMB}, {"rigid_body", MCT_DRAG}};
+    } kinks[] = {{"cart_pole", MCT_COULOMB_MOREAU},         {"reaction_wheel", MCT_COULOMB_MOREAU},
+                 {"pendulum", MCT_COULOMB_MOREAU},          {"pendulum", MCT_DRAG},
+                 {"fixed_axis", MCT_COULOMB_MOREAU},        {"solid_pendulum", MCT_COULOMB_MOREAU},
+                 {"particle_pendulum", MCT_COULOMB_MOREAU}, {"rigid_body", MCT_DRAG}};
     for (size_t i = 0; i < sizeof kinks / sizeof kinks[0]; i++) {
         const int system = system_called(kinks[i].system);
         mct_scene scene;

@@ -40,7 +40,7 @@ static mct_scene scene_with(int stepper, uint32_t effects)
 
 enum { TRIALS = 10000, PHASE = 2, TIME = 3 };
 
-static const uint32_t switches[4] = {MCT_GRAVITY, MCT_COULOMB, MCT_SPRING, MCT_FORCING};
+static const uint32_t switches[4] = {MCT_GRAVITY, MCT_COULOMB_MOREAU, MCT_SPRING, MCT_FORCING};
 
 typedef struct {
     mct_scene scene;
@@ -88,7 +88,7 @@ static void forces_of(trial *self, double *others, double *dry, double *size)
     const double g = (self->effects & MCT_GRAVITY) ? *parameter_of(&self->scene, "gravity") : 0;
     const double m = *parameter_of(&self->scene, "mass");
     const double slope = *parameter_of(&self->scene, "slope");
-    const double normal = (self->effects & MCT_COULOMB) ? m * g * cos(slope) : 0;
+    const double normal = (self->effects & MCT_COULOMB_MOREAU) ? m * g * cos(slope) : 0;
     const double hold = *parameter_of(&self->scene, "static_coefficient") * normal;
     const double slide = *parameter_of(&self->scene, "dynamic_coefficient") * normal;
     const double relative = (double)self->x[1] - (double)(mct_real)*parameter_of(&self->scene, "belt_speed");
@@ -181,8 +181,8 @@ static void test_powers_add_up_to_the_rate_of_the_energy(void)
 
 static void test_a_block_held_on_a_slope_does_not_creep(void)
 {
-    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB | MCT_FORCING) {
-        mct_scene scene = scene_with(stepper, MCT_GRAVITY | MCT_COULOMB | MCT_FORCING);
+    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING) {
+        mct_scene scene = scene_with(stepper, MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING);
         *parameter_of(&scene, "slope") =
             0.5; /* tan = 0.546: between the coefficients, so it is the static one */
         mct_plant plant;
@@ -197,8 +197,8 @@ static void test_a_block_held_on_a_slope_does_not_creep(void)
 
 static void test_a_block_on_a_belt_is_carried_at_the_speed_of_the_belt(void)
 {
-    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB) {
-        mct_scene scene = scene_with(stepper, MCT_GRAVITY | MCT_COULOMB);
+    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB_MOREAU) {
+        mct_scene scene = scene_with(stepper, MCT_GRAVITY | MCT_COULOMB_MOREAU);
         *parameter_of(&scene, "belt_speed") = 0.3;
         scene.initial[1] = 2;
         mct_plant plant;

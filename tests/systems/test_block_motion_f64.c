@@ -37,7 +37,7 @@ static int block(void)
 
 static double stop_error(int stepper, double dt)
 {
-    mct_scene scene = scene_of(block(), stepper, MCT_GRAVITY | MCT_COULOMB);
+    mct_scene scene = scene_of(block(), stepper, MCT_GRAVITY | MCT_COULOMB_MOREAU);
     scene.dt = dt;
     scene.initial[1] = 2.0007;
     mct_plant plant;
@@ -49,7 +49,7 @@ static double stop_error(int stepper, double dt)
 
 static void test_a_sliding_block_stops_after_v2_over_2_mu_g(void)
 {
-    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB) {
+    FOR_EACH_STEPPER (stepper, block(), MCT_GRAVITY | MCT_COULOMB_MOREAU) {
         const double error = stop_error(stepper, 1e-3);
         printf("stop, %s: %.1e m, at h/2 %.1e m\n", mct_steppers[stepper].name, error,
                stop_error(stepper, 5e-4));
@@ -62,7 +62,7 @@ static void test_a_sliding_block_stops_after_v2_over_2_mu_g(void)
 /* Each half oscillation loses 2 F_d / k of amplitude. */
 static void test_a_spring_loses_2_mu_n_over_k_each_half_cycle(void)
 {
-    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB | MCT_SPRING);
+    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_SPRING);
     const double lost = 2 * 0.5 * 9.81 / 100;
     double rest = 1;
     int half_cycles = 0;
@@ -86,7 +86,7 @@ static void test_a_spring_loses_2_mu_n_over_k_each_half_cycle(void)
 /* T = (2 pi - 2 atan(D w / b)) / w + 2 D / b with D = (F_s - F_d) / k. */
 static void test_stick_slip_on_a_belt_has_its_period(void)
 {
-    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB | MCT_SPRING);
+    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_SPRING);
     *parameter_of(&scene, "dynamic_coefficient") = 0.4;
     *parameter_of(&scene, "belt_speed") = 0.1;
     scene.initial[1] = 0.1;
@@ -118,7 +118,7 @@ static void test_stick_slip_on_a_belt_has_its_period(void)
 /* F = r t breaks away at F_s / r, then m x = r t^3 / 6 + (F_s - F_d) t^2 / 2. */
 static void test_a_ramp_breaks_away_at_static_friction(void)
 {
-    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB | MCT_FORCING);
+    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING);
     *parameter_of(&scene, "force_ramp") = -1.7;
     mct_plant plant;
     start_plant(&plant, &scene);
@@ -137,7 +137,7 @@ static void test_a_ramp_breaks_away_at_static_friction(void)
  */
 static void test_a_peak_within_a_step_breaks_away(void)
 {
-    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB | MCT_FORCING);
+    mct_scene scene = scene_of(block(), MCT_STEPPER_EXPO, MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING);
     *parameter_of(&scene, "force_amplitude") = 0.6 * 9.81 / sin(M_PI / 2 - 0.3);
     *parameter_of(&scene, "force_frequency") = 900;
     scene.initial[2] = M_PI / 2 - 0.4;
@@ -263,7 +263,8 @@ static void test_five_seconds_of_motion_are_those_of_the_closed_form(void)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const motion_case *const c = &cases[i];
-        const uint32_t effects = MCT_GRAVITY | MCT_COULOMB | MCT_FORCING | (c->spring > 0 ? MCT_SPRING : 0);
+        const uint32_t effects =
+            MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING | (c->spring > 0 ? MCT_SPRING : 0);
         const model p = {c->mass,
                          c->spring,
                          -(real)c->mass * 9.81 * sinl(c->slope),

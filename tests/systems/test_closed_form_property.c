@@ -104,7 +104,7 @@ static void randomise(trial *self, test_random *random, int system, uint32_t eff
 
 static double friction_of(trial *self, const char *viscous, const char *dry, double rate)
 {
-    const double sliding = (self->effects & MCT_COULOMB) ? *parameter_of(&self->scene, dry) : 0;
+    const double sliding = (self->effects & MCT_COULOMB_MOREAU) ? *parameter_of(&self->scene, dry) : 0;
     const double damping = (self->effects & MCT_VISCOUS) ? *parameter_of(&self->scene, viscous) : 0;
     return -damping * rate - (rate > 0 ? sliding : rate < 0 ? -sliding : 0);
 }
@@ -264,7 +264,7 @@ static void for_all_trials(int system, void (*check)(const trial *))
     for (int k = 0; k < TRIALS; k++) {
         static trial now;
         const uint32_t effects = ((k / 3) % 5 ? MCT_GRAVITY : 0) | ((k / 15) % 2 ? MCT_VISCOUS : 0) |
-                                 ((k / 30) % 2 ? MCT_COULOMB : 0) | motors[k % MOTORS];
+                                 ((k / 30) % 2 ? MCT_COULOMB_MOREAU : 0) | motors[k % MOTORS];
         randomise(&now, &random, system, effects);
         TEST_ASSERT_EQUAL_INT(MCT_OK, now.system->prepare(&now.scene, 1e-3, &now.constants, NULL));
         now.system->evaluate(&now.constants, effects, now.x, now.input, &now.out);
@@ -427,7 +427,7 @@ static void test_dry_friction_at_rest_holds_or_gives_way_against_the_motion(void
     int held = 0;
     for (int k = 0; k < 4000; k++) {
         static trial now;
-        randomise(&now, &random, k % 2, MCT_GRAVITY | MCT_COULOMB | motors[k % MOTORS]);
+        randomise(&now, &random, k % 2, MCT_GRAVITY | MCT_COULOMB_MOREAU | motors[k % MOTORS]);
         const int resting = 1 + (k / 2) % 3; /* bit i: coordinate i rests */
         for (int i = 0; i < N; i++) {
             now.x[N + i] = (resting >> i) & 1 ? 0 : now.x[N + i];
@@ -436,7 +436,7 @@ static void test_dry_friction_at_rest_holds_or_gives_way_against_the_motion(void
         now.system->evaluate(&now.constants, now.effects, now.x, now.input, &now.out);
         mct_evaluation smooth;
         mct_scene frictionless = now.scene;
-        frictionless.effects &= ~(uint32_t)MCT_COULOMB;
+        frictionless.effects &= ~(uint32_t)MCT_COULOMB_MOREAU;
         mct_constants constants;
         TEST_ASSERT_EQUAL_INT(MCT_OK, now.system->prepare(&frictionless, 1e-3, &constants, NULL));
         now.system->evaluate(&constants, frictionless.effects, now.x, now.input, &smooth);

@@ -152,9 +152,9 @@ static void evaluate(trial *self)
         }
     }
     self->couple = (double)self->input - used(self, MCT_VISCOUS, "friction") * rate -
-                   used(self, MCT_COULOMB, "coulomb") * (rate > 0   ? 1
-                                                         : rate < 0 ? -1
-                                                                    : 0);
+                   used(self, MCT_COULOMB_MOREAU, "coulomb") * (rate > 0   ? 1
+                                                                : rate < 0 ? -1
+                                                                           : 0);
     TEST_ASSERT_EQUAL_INT(MCT_OK, system->prepare(&self->scene, 1e-3, &self->constants, NULL));
     system->evaluate(&self->constants, self->scene.effects, self->x, self->input, &self->out);
     TEST_ASSERT_EQUAL_INT(
@@ -211,7 +211,7 @@ static void compare(int quantity, double closed, double expected, double size)
 
 static void for_all_trials(void (*check)(trial *))
 {
-    static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB};
+    static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU};
     for (int system = 0; system < SYSTEMS; system++) {
         test_random random = {1729};
         memset(worst, 0, sizeof worst);
@@ -324,7 +324,7 @@ static void test_one_particle_is_the_pendulum(void)
     test_random random = {5};
     for (int n = 0; n < 100; n++) {
         static trial now;
-        const uint32_t effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB;
+        const uint32_t effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU;
         randomise(&now, &random, number_of(names[PLANE]), effects);
         const double row[] = {0.7, 0, 1.3};
         set_particles(&now.scene, row, 3);
@@ -446,7 +446,7 @@ static void test_dry_friction_holds_up_to_the_moment_of_the_weight(void)
     for (int system = 0; system < SYSTEMS; system++) {
         static trial now;
         const int number = number_of(names[system]);
-        FOR_EACH_STEPPER (stepper, number, MCT_GRAVITY | MCT_COULOMB) {
+        FOR_EACH_STEPPER (stepper, number, MCT_GRAVITY | MCT_COULOMB_MOREAU) {
             for (int slips = 0; slips < 2; slips++) {
                 mct_scene scene = scene_of(number, stepper, MCT_GRAVITY);
                 scene.initial[0] = 1.1;
@@ -454,7 +454,7 @@ static void test_dry_friction_holds_up_to_the_moment_of_the_weight(void)
                 now.x[0] = MCT_R(1.1);
                 now.x[1] = now.input = 0;
                 evaluate(&now);
-                scene.effects = MCT_GRAVITY | MCT_COULOMB;
+                scene.effects = MCT_GRAVITY | MCT_COULOMB_MOREAU;
                 *parameter_of(&scene, "coulomb") = fabs((double)now.out.tau[0]) * (slips ? 0.999 : 1.001);
                 mct_plant plant;
                 start_plant(&plant, &scene);

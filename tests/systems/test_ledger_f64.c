@@ -97,11 +97,11 @@ static void test_the_works_of_all_effects_add_up_to_the_change_of_energy(void)
  * does. */
 static void test_the_ledger_closes_with_dry_friction_to_first_order(void)
 {
-    mct_scene cart = scene_with(CART_POLE, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB);
+    mct_scene cart = scene_with(CART_POLE, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU);
     *parameter_of(&cart, "cart_coulomb") = 0.5;
     *parameter_of(&cart, "pole_coulomb") = 0.01;
     mct_scene wheel =
-        scene_with(REACTION_WHEEL, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_MOTOR_QUASI_STATIC);
+        scene_with(REACTION_WHEEL, MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_MOTOR_QUASI_STATIC);
     *parameter_of(&wheel, "arm_coulomb") = 0.004;
     *parameter_of(&wheel, "wheel_coulomb") = 0.0005;
     const mct_scene *const scenes[] = {&cart, &wheel};

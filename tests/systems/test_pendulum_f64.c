@@ -65,14 +65,14 @@ static void randomise(trial *self, test_random *random, uint32_t effects)
     self->gravity = used(self, MCT_GRAVITY, "gravity");
     self->couple = self->input - used(self, MCT_VISCOUS, "friction") * rate -
                    used(self, MCT_DRAG, "drag") * rate * fabs(rate) -
-                   used(self, MCT_COULOMB, "coulomb") * (rate > 0 ? 1 : -1);
+                   used(self, MCT_COULOMB_MOREAU, "coulomb") * (rate > 0 ? 1 : -1);
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_systems[pendulum]->prepare(&self->scene, 1e-3, &self->constants, NULL));
     mct_systems[pendulum]->evaluate(&self->constants, effects, self->x, self->input, &self->out);
 }
 
 static void for_all_trials(void (*check)(trial *))
 {
-    static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB, MCT_DRAG};
+    static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU, MCT_DRAG};
     test_random random = {1729};
     for (int n = 0; n < TRIALS; n++) {
         static trial now;

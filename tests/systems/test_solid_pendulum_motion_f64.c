@@ -218,7 +218,7 @@ static void test_energy_stays_over_a_million_steps_without_friction(void)
 static void test_dry_friction_takes_its_torque_times_the_way_between_turning_points(void)
 {
     const double dry = 1;
-    mct_scene scene = scene_of(system_number, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_COULOMB);
+    mct_scene scene = scene_of(system_number, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_COULOMB_MOREAU);
     *parameter_of(&scene, "coulomb") = dry;
     mct_plant plant;
     start_plant(&plant, &scene);

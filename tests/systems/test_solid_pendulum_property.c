@@ -79,7 +79,7 @@ static void run_engine(trial *self)
                         *parameter_of(&self->scene, "size_2") * *parameter_of(&self->scene, "size_3");
     const double gravity = (self->effects & MCT_GRAVITY) ? *parameter_of(&self->scene, "gravity") : 0;
     const double friction = (self->effects & MCT_VISCOUS) ? *parameter_of(&self->scene, "friction") : 0;
-    const double dry = (self->effects & MCT_COULOMB) ? *parameter_of(&self->scene, "coulomb") : 0;
+    const double dry = (self->effects & MCT_COULOMB_MOREAU) ? *parameter_of(&self->scene, "coulomb") : 0;
     const double rate = (double)self->x[1];
     mct_real masses[PARTICLES];
     mct_real force[3 * PARTICLES] = {0};
@@ -133,7 +133,7 @@ static void for_all_trials(void (*check)(trial *))
     for (int n = 0; n < TRIALS; n++) {
         static trial now;
         const uint32_t effects =
-            ((n & 1) ? MCT_GRAVITY : 0) | ((n & 2) ? MCT_VISCOUS : 0) | ((n & 4) ? MCT_COULOMB : 0);
+            ((n & 1) ? MCT_GRAVITY : 0) | ((n & 2) ? MCT_VISCOUS : 0) | ((n & 4) ? MCT_COULOMB_MOREAU : 0);
         randomise(&now, &random, effects);
         run_engine(&now);
         check(&now);
@@ -266,7 +266,7 @@ static void test_dry_friction_holds_the_bar_level_from_20_3043_newton_metres_on(
 {
     static const double sizes[] = {20.31, 20.30};
     for (int i = 0; i < 2; i++) {
-        mct_scene scene = scene_of(system_number, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_COULOMB);
+        mct_scene scene = scene_of(system_number, MCT_STEPPER_RK4, MCT_GRAVITY | MCT_COULOMB_MOREAU);
         *parameter_of(&scene, "coulomb") = sizes[i];
         mct_plant plant;
         start_plant(&plant, &scene);
