@@ -71,8 +71,7 @@ static const mct_field parameters[PARAMETERS] = {
     [BACK_EMF_CONSTANT] = MCT_COEFFICIENT(MCT_MOTOR, "back_emf_constant", "V s/rad", 0, 1e4, 0.00767,
                                           "motor voltage per speed"),
     [RESISTANCE] = MCT_COEFFICIENT(MCT_MOTOR, "resistance", "ohm", 0, 1e6, 2.6, "armature"),
-    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.00018,
-                                   "armature; read by motor = \"inductive\""),
+    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.00018, "armature"),
     [GEAR_RATIO] =
         MCT_COEFFICIENT(MCT_MOTOR, "gear_ratio", "", 1e-3, 1e4, 3.71, "motor turns per pulley turn"),
     [PULLEY_RADIUS] = MCT_COEFFICIENT(MCT_MOTOR, "pulley_radius", "m", 1e-5, 1e3, 0.00635,
@@ -80,7 +79,7 @@ static const mct_field parameters[PARAMETERS] = {
     [SUPPLY_VOLTAGE] =
         MCT_COEFFICIENT(MCT_MOTOR, "supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
     [CURRENT_LIMIT] = MCT_COEFFICIENT(MCT_SATURATION_CURRENT, "current_limit", "A", 1e-6, 1e4, 3,
-                                      "of the drive, either way; read by saturation = \"current\""),
+                                      "of the drive, either way"),
 };
 
 static const mct_coordinate coordinates[2] = {

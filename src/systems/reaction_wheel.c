@@ -78,12 +78,11 @@ static const mct_field parameters[PARAMETERS] = {
     [BACK_EMF_CONSTANT] =
         MCT_COEFFICIENT(MCT_MOTOR, "back_emf_constant", "V s/rad", 0, 1e4, 0.0274, "motor voltage per speed"),
     [RESISTANCE] = MCT_COEFFICIENT(MCT_MOTOR, "resistance", "ohm", 0, 1e6, 12.1, "armature"),
-    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.006,
-                                   "armature; read by motor = \"inductive\""),
+    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.006, "armature"),
     [SUPPLY_VOLTAGE] =
         MCT_COEFFICIENT(MCT_MOTOR, "supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
     [CURRENT_LIMIT] = MCT_COEFFICIENT(MCT_SATURATION_CURRENT, "current_limit", "A", 1e-6, 1e4, 0.6,
-                                      "of the drive, either way; read by saturation = \"current\""),
+                                      "of the drive, either way"),
 };
 
 static const mct_coordinate coordinates[2] = {

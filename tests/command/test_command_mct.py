@@ -36,7 +36,7 @@ def test_json_has_all_keys_in_the_shapes_of_the_system(result, scenes, system):
 def test_the_numbers_are_those_of_the_textbook_cart_pole(result, scenes):
     m1, m2, length, gravity = 0.758, 0.175, 0.434, 9.81
     angle, rate, force = 0.5, 2.0, 3.0
-    found = at(result, scenes, "cart_pole", "--set", "effects.motor=off", "--set", "effects.viscous=false",
+    found = at(result, scenes, "cart_pole", "--set", "effects.motor=off", "--set", "effects.saturation=off", "--set", "effects.viscous=false",
                "--set", "controller.kind=none", "--input", force, pole_angle=angle, pole_rate=rate)  # fmt: skip
     s, c = math.sin(angle), math.cos(angle)
     mass = [[m1 + m2, m2 * length * c], [m2 * length * c, m2 * length**2]]
