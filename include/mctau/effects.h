@@ -52,7 +52,25 @@ typedef struct {
     bool is_switch;             /**< false and true may stand for the first two choices */
 } mct_effect;
 
-#define MCT_EFFECT_COUNT 15
+/** Place of an effect in mct_effects. */
+enum {
+    MCT_EFFECT_GRAVITY,
+    MCT_EFFECT_VISCOUS,
+    MCT_EFFECT_COULOMB,
+    MCT_EFFECT_MOTOR,
+    MCT_EFFECT_SATURATION,
+    MCT_EFFECT_DRAG,
+    MCT_EFFECT_SPRING,
+    MCT_EFFECT_BASE_MOTION,
+    MCT_EFFECT_CENTRIFUGAL,
+    MCT_EFFECT_CORIOLIS,
+    MCT_EFFECT_EULER,
+    MCT_EFFECT_STOKES,
+    MCT_EFFECT_BUOYANCY,
+    MCT_EFFECT_FORCING,
+    MCT_EFFECT_FORCES,
+    MCT_EFFECT_COUNT
+};
 /** All effects, in the order in which they are listed. */
 extern const mct_effect mct_effects[MCT_EFFECT_COUNT];
 
