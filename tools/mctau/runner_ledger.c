@@ -50,8 +50,8 @@ typedef struct {
     vector value, rest; /* of the states; their sum is exact */
     vector rate;        /* there; behind the states the powers */
     energies energy;
-    bool rests[RUNNER_MAX_COORDINATES];
-    double least[RUNNER_MAX_COORDINATES]; /* acceleration that friction does not hold */
+    bool rests[RUNNER_MAX_COORDINATES];   /* against dry friction */
+    double least[RUNNER_MAX_COORDINATES]; /* acceleration of what rests that is more than rounding */
 } place;
 
 struct ledger {
@@ -129,6 +129,11 @@ static void turn_rate(const mct_system *system, const double *attitude, const do
     }
 }
 
+static bool is_held(const place *from, const mct_evaluation *at, int i)
+{
+    return from->rests[i] && fabs((double)at->acceleration[i]) <= from->least[i];
+}
+
 /* Rates of all states, and the powers behind them. */
 static void rates_of(const ledger *self, const place *from, const double *y, const mct_evaluation *at,
                      double *rate)
@@ -138,9 +143,7 @@ static void rates_of(const ledger *self, const place *from, const double *y, con
     const int positions = self->system->attitude == MCT_ATTITUDE_NONE ? n : n - 3;
     const powers power = runner_powers(at);
     for (int i = 0; i < n; i++) {
-        const double a = (double)at->acceleration[i];
-        const bool held = from->rests[i] && fabs(a) <= from->least[i];
-        rate[first + i] = held ? 0 : a;
+        rate[first + i] = is_held(from, at, i) ? 0 : (double)at->acceleration[i];
     }
     for (int i = 0; i < positions; i++) {
         rate[i] = y[first + i];
@@ -170,8 +173,8 @@ static double slip(const ledger *self, const double *y, int i)
     return y[self->first_rate + i] - self->belt_speed;
 }
 
-/* Which coordinates rest against dry friction: those without a sliding speed that it holds. */
-static void find_rests(const ledger *self, place *here)
+/* Which coordinates rest: those without a sliding speed that dry friction holds. */
+static void find_rests(const ledger *self, const mct_evaluation *at, place *here)
 {
     for (int i = 0; i < self->coordinates; i++) {
         here->rests[i] = (self->effects & MCT_COULOMB) != 0 && slip(self, here->value, i) == 0;
@@ -185,6 +188,7 @@ static void find_rests(const ledger *self, place *here)
             y[self->first_rate + i] -= 2 * nudge;
             evaluate(self, y, &back);
             here->least[i] = HELD * fabs((double)back.acceleration[i] - (double)forth.acceleration[i]);
+            here->rests[i] = is_held(here, at, i);
         }
     }
 }
@@ -195,7 +199,7 @@ static void arrive(ledger *self, place *here)
     mct_evaluation at;
     evaluate(self, here->value, &at);
     here->energy = runner_energies(&at);
-    find_rests(self, here);
+    find_rests(self, &at, here);
     rates_of(self, here, here->value, &at, here->rate);
 }
 
@@ -206,12 +210,32 @@ static double size_of(const ledger *self)
 
 /* --- the motion --- */
 
-/* Changes after h by `steps` steps of the modified midpoint rule. */
-static void midpoint(const ledger *self, const place *from, double h, int steps, double *change)
+/* Whether coordinate i slides the other way than from where the part began. */
+static bool turns_round(const ledger *self, const place *from, const double *y, int i)
+{
+    const double before = slip(self, from->value, i);
+    const double sense = before != 0 ? before : from->rate[self->first_rate + i];
+    return (self->effects & MCT_COULOMB) != 0 && sense * slip(self, y, i) < 0;
+}
+
+/* Whether dry friction is still what it was where the part began: no sliding has turned round, no rest has ended. */
+static bool is_smooth(const ledger *self, const place *from, const double *y, const double *rate)
+{
+    for (int i = 0; i < self->coordinates; i++) {
+        if (turns_round(self, from, y, i) || (from->rests[i] && rate[self->first_rate + i] != 0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Changes after h by `steps` steps of the modified midpoint rule; whether dry friction kept its sense. */
+static bool midpoint(const ledger *self, const place *from, double h, int steps, double *change)
 {
     const int all = self->entries + POWER_COUNT;
     const double step = h / steps;
     vector before = {0}, now, y, rate;
+    bool smooth = true;
     for (int i = 0; i < all; i++) {
         now[i] = step * from->rate[i];
     }
@@ -222,6 +246,7 @@ static void midpoint(const ledger *self, const place *from, double h, int steps,
         }
         evaluate(self, y, &at);
         rates_of(self, from, y, &at, rate);
+        smooth = smooth && is_smooth(self, from, y, rate);
         for (int i = 0; i < all; i++) {
             const double next = before[i] + 2 * step * rate[i];
             before[i] = now[i];
@@ -229,6 +254,7 @@ static void midpoint(const ledger *self, const place *from, double h, int steps,
         }
     }
     memcpy(change, now, sizeof now);
+    return smooth;
 }
 
 /* Goes on by a change of the states. */
@@ -271,7 +297,7 @@ static bool advance(ledger *self, const place *from, double h, place *to, double
     vector table[ROWS];
     for (int k = 0; k < ROWS; k++) {
         double error = 0;
-        midpoint(self, from, h, 2 * (k + 1), table[k]);
+        const bool smooth = midpoint(self, from, h, 2 * (k + 1), table[k]);
         for (int j = k - 1; j >= 0; j--) { /* table[j] becomes the extrapolation by rows j to k */
             const double ratio = (double)(k + 1) / (j + 1);
             const double weight = 1 / (ratio * ratio - 1);
@@ -282,10 +308,13 @@ static bool advance(ledger *self, const place *from, double h, place *to, double
             }
         }
         *rows = k + 1;
+        if (!smooth) {
+            break;
+        }
         if (k >= 2 && error <= 2 * (double)MCT_REAL_EPSILON * size_of(self)) {
             memcpy(change, table[0], sizeof table[0]);
             move(self, from, change, to);
-            if (closes(self, from, to, change)) {
+            if (closes(self, from, to, change) && is_smooth(self, from, to->value, to->rate)) {
                 return true;
             }
         }
@@ -294,11 +323,11 @@ static bool advance(ledger *self, const place *from, double h, place *to, double
     return false;
 }
 
-/* What comes to rest within the smallest part rests from there on. */
+/* What turns round within the smallest part stops there; it goes on at once unless friction holds it. */
 static void stop_sliding(ledger *self, const place *from, place *to)
 {
-    for (int i = 0; i < self->coordinates && (self->effects & MCT_COULOMB); i++) {
-        if (slip(self, from->value, i) * slip(self, to->value, i) < 0) {
+    for (int i = 0; i < self->coordinates; i++) {
+        if (turns_round(self, from, to->value, i)) {
             to->value[self->first_rate + i] = self->belt_speed;
             to->rest[self->first_rate + i] = 0;
         }
