@@ -439,8 +439,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy =
         MCT_R(0.5) * (k->total_mass * pd * pd + k->inertia * thd * thd) + k->moment * c * pd * thd;
     out->potential_energy = k->weight_moment * c;
-    out->power_viscous = cart_viscous * pd + pole_viscous * thd;
-    out->power_coulomb = dry[0] * pd + dry[1] * thd;
+    out->power[MCT_EFFECT_GRAVITY] = k->weight_moment * s * thd;
+    out->power[MCT_EFFECT_VISCOUS] = cart_viscous * pd + pole_viscous * thd;
+    out->power[MCT_EFFECT_COULOMB] = dry[0] * pd + dry[1] * thd;
     mct_motor_powers(&k->motor, effects, u, pd, out);
 }
 

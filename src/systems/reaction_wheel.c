@@ -433,8 +433,10 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy =
         MCT_R(0.5) * (k->arm_inertia * arm_rate * arm_rate + k->wheel_inertia * rim_rate * rim_rate);
     out->potential_energy = k->weight_moment * c;
-    out->power_viscous = -(k->arm_viscous * arm_rate * arm_rate + k->wheel_viscous * wheel_rate * wheel_rate);
-    out->power_coulomb = dry[0] * arm_rate + dry[1] * wheel_rate;
+    out->power[MCT_EFFECT_GRAVITY] = k->weight_moment * s * arm_rate;
+    out->power[MCT_EFFECT_VISCOUS] =
+        -(k->arm_viscous * arm_rate * arm_rate + k->wheel_viscous * wheel_rate * wheel_rate);
+    out->power[MCT_EFFECT_COULOMB] = dry[0] * arm_rate + dry[1] * wheel_rate;
     mct_motor_powers(&k->motor, effects, u, wheel_rate, out);
 }
 

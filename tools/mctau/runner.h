@@ -17,11 +17,23 @@
 #include "mctau/message.h"
 #include "mctau/scene.h"
 #include "mctau/status.h"
+#include "powers.h"
 
 #define RUNNER_MAX_STATES      16
 #define RUNNER_MAX_COORDINATES 16
 #define RUNNER_MAX_PARTICLES   32
 #define RUNNER_MAX_FAULTS      16
+
+/* Follows a run and keeps its ledger: see docs/ledger.md. */
+typedef struct ledger ledger;
+
+typedef struct {
+    powers work; /* along the exact motion of each tick */
+    energies gain, of_stepper,
+        unexplained;     /* gain = what the works bring to each + of_stepper + unexplained */
+    double size;         /* of all works and energies: what rounding is relative to */
+    uint64_t lost_ticks; /* whose exact motion could not be followed: left unexplained */
+} ledger_result;
 
 /* Where the results of a run go; NULL or "" for nowhere. */
 typedef struct {
@@ -36,13 +48,10 @@ typedef struct {
     void (*started)(
         const struct mct_can_report *report); /* told what the start found on a CAN bus; or NULL */
     bool progress;                            /* show progress on stderr */
+    ledger *
+        ledger; /* told of every tick of a mechanism that is simulated here, by the function of its runner; or NULL */
+    void (*ledger_tick)(ledger *self, const double *value, const double *rest, double input);
 } run_options;
-
-/* Energies [J] and powers [W] at one state. */
-typedef struct {
-    double kinetic, potential, magnetic;
-    double power_input, power_viscous, power_coulomb, power_resistance, power_conversion, power_base;
-} energies;
 
 typedef struct {
     int states;
@@ -122,6 +131,7 @@ typedef struct {
     double current;
     double input; /* as applied */
     energies energy;
+    powers power;
 } mct_result;
 
 /* First difference between a log and its replay. */
@@ -196,6 +206,11 @@ typedef struct {
     /* Inputs of the first `ticks` ticks: those of [input], or what the controller applies in simulation. */
     mct_status (*inputs)(const mct_scene *scene, const run_options *options, uint64_t ticks, double *inputs,
                          mct_message *why);
+    /* A ledger of a scene's run, which starts at its initial state; ledger_end() frees it. */
+    mct_status (*ledger_begin)(const mct_scene *scene, ledger **self, mct_message *why);
+    /* The state after a tick, in two parts, and the input as applied. The first call is for the start. */
+    void (*ledger_tick)(ledger *self, const double *value, const double *rest, double input);
+    void (*ledger_end)(ledger *self, ledger_result *result);
     /* Follows, times and counts, as the trial asks; the scene's controller and [input] do not act. */
     mct_status (*try)(const mct_scene *scene, trial *asked, mct_message *why);
 } mct_runner;
