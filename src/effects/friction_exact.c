@@ -5,7 +5,7 @@ enum { ITERATIONS = 12 }; /* of Newton's method */
 bool mct_friction_next_mode(int *tried, mct_phase *phase, mct_real *required)
 {
     enum { MODES = 9 };
-    static const int8_t modes[MODES][2] = {{0, 0},  {1, 0}, {-1, 0}, {0, 1},  {0, -1},
+    static const int8_t modes[MODES][2] = {{0, 0}, {1, 0},  {-1, 0}, {0, 1},  {0, -1},
                                            {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
     const int coordinates = phase->coordinates;
     mct_real *const direction = phase->mode.direction;

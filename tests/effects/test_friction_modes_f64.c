@@ -180,15 +180,20 @@ static void advance(const model *self, real duration, real *x, int *visits, int 
     }
 }
 
-static void compare(int system, uint32_t effects, double static_ratio, double dt, double tolerance, int *visits)
+static void compare(int system, uint32_t effects, double static_ratio, double dt, double tolerance,
+                    int *visits)
 {
     model self = {.system = system};
     self.scene = scene_of(system, MCT_STEPPER_TAYLOR12, effects);
     self.scene.dt = dt;
-    *parameter_of(&self.scene, names[system][2]) = system == CART_POLE ? 0.3 : 2e-4;
-    *parameter_of(&self.scene, names[system][3]) = system == CART_POLE ? 0.001 : 1e-8;
-    *parameter_of(&self.scene, names[system][4]) = system == CART_POLE ? 1.5 : 0.06;
-    *parameter_of(&self.scene, names[system][5]) = system == CART_POLE ? 0.1 : 0.002;
+    static const double parameters[2][5] = {{0.3, 0.001, 1.5, 0.1, 4}, {0.005, 1e-6, 0.06, 0.12, 0.25}};
+    for (int i = 0; i < 4; i++) {
+        *parameter_of(&self.scene, names[system][DRAG + i]) = parameters[system][i];
+    }
+    const double size = parameters[system][4];
+    if (system == REACTION_WHEEL) {
+        *parameter_of(&self.scene, "wheel_inertia") = 1e-3; /* one that moves the arm before it spins fast */
+    }
     *parameter_of(&self.scene, "static_ratio") = static_ratio;
     for (int i = 0; i < NAMES; i++) {
         self.p[i] = *parameter_of(&self.scene, names[system][i]);
@@ -197,7 +202,6 @@ static void compare(int system, uint32_t effects, double static_ratio, double dt
     for (int i = 0; i < 2; i++) {
         self.hold[i] = (real)static_ratio * self.p[SLIDE + i];
     }
-    const double size = system == CART_POLE ? 4 : 0.012;
     const int upright = system == CART_POLE ? 1 : 0;
     self.scene.initial[upright] = 3.141592653589793 - 1.2;
     self.scene.initial[2] = 0.4;
