@@ -55,7 +55,8 @@ static void test_a_hinge_stops_after_w2_i_over_2_tau(void)
             step_plant(&plant, 0, 1000);
             const double way = 1.0007 * 1.0007 * 0.009 / (2 * 0.02);
             const double error = mct_plant_value(&plant, 0) - way;
-            printf("stop, %s, %s: %.1e rad\n", i == 0 ? "moreau" : "exact", mct_steppers[stepper].name, error);
+            printf("stop, %s, %s: %.1e rad\n", i == 0 ? "moreau" : "exact", mct_steppers[stepper].name,
+                   error);
             TEST_ASSERT_TRUE(plant.state.x[1] == 0);
             const double clamp = i == 0 ? 0.02 / 0.009 * 1e-6 / 8 : 0;
             TEST_ASSERT_DOUBLE_WITHIN(clamp + ROUNDING * way, 0, error);
@@ -79,7 +80,8 @@ static void test_what_static_friction_holds_does_not_creep_in_1e6_steps_and_goes
             start_plant(&plant, &scene);
             const mct_state before = plant.state;
             step_plant(&plant, 0, 1000000);
-            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&before, &plant.state, sizeof before, mct_steppers[stepper].name);
+            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&before, &plant.state, sizeof before,
+                                             mct_steppers[stepper].name);
             *parameter_of(&scene, "coulomb") = weight / 1.25 * (1 - margin);
             start_plant(&plant, &scene);
             step_plant(&plant, 0, 1000);
