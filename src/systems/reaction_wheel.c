@@ -460,8 +460,7 @@ static void motion(const void *constants, uint32_t effects, const mct_state *sta
     mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
 }
 
-static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                            mct_real *dx)
+MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
     (void)effects;
     (void)u;
@@ -494,7 +493,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real smooth[2] = {k->weight_moment * s - (k->arm_viscous + arm_drag) * arm_rate,
                                 drive - (k->wheel_viscous + wheel_drag) * wheel_rate};
     mct_real dry[2];
-    mct_friction_force(k->inertia, k->coulomb, k->hold, x + 2, smooth, dry);
+    mct_friction_force(&k->inertia, k->coulomb, k->hold, x + 2, smooth, dry);
     out->tau[0] = smooth[0] + dry[0];
     out->tau[1] = smooth[1] + dry[1];
     out->acceleration[0] = (out->tau[0] - out->tau[1]) * k->inverse_arm;
