@@ -30,8 +30,10 @@ enum {
     ROWS = 8,                                      /* of the extrapolation */
     LARGEST = RUNNER_MAX_STATES + 1 + POWER_COUNT, /* states, time, works */
     HALVINGS = 44,                                 /* of a tick, at most */
-    MOST_PARTS = 200000                            /* tried a tick: half a minute's work */
+    MOST_LOST = 20,   /* ticks, after which the rest of the run is not followed */
+    MOST_PARTS = 5000 /* tried a tick */
 };
+#define PI 3.14159265358979323846
 #define STRICT \
     0.05 /* parts of a tick longer than that are taken when they close to a thousandth of the run's rounding */
 #define HELD 1e-7 /* of a friction's size: an acceleration below is rounding */
@@ -220,9 +222,19 @@ static bool turns_round(const ledger *self, const place *from, const double *y, 
     return (self->effects & MCT_COULOMB) != 0 && sense * slip(self, y, i) < 0;
 }
 
-/* Whether dry friction is still what it was where the part began: no sliding has turned round, no rest has ended. */
+/* Whether the first coordinate is a distance from a pivot, which what passes there leaves on the other side. */
+static bool is_distance(const ledger *self)
+{
+    return self->system->coordinates[0].position.minimum > 0;
+}
+
+/* Whether forces are still those of where the part began: no sliding has turned round, no rest has ended, no pivot is
+ * passed. */
 static bool is_smooth(const ledger *self, const place *from, const double *y, const double *rate)
 {
+    if (is_distance(self) && y[0] <= 0) {
+        return false;
+    }
     for (int i = 0; i < self->coordinates; i++) {
         if (turns_round(self, from, y, i) || (from->rests[i] && rate[self->first_rate + i] != 0)) {
             return false;
@@ -345,16 +357,25 @@ static bool advance(ledger *self, const place *from, double h, double share, pla
     return false;
 }
 
-/* What slows down to rest within the smallest part stops; it goes on at once unless friction holds it. */
-static void stop_sliding(ledger *self, const place *from, double h, place *to)
+/*
+ * What meets a kink within the smallest part. What slows down to rest stops, and goes on at once unless friction holds
+ * it; a distance that comes to nothing grows again, half a turn further.
+ */
+static void pass_kinks(ledger *self, const place *from, double h, place *to)
 {
+    const int rate = self->first_rate;
     for (int i = 0; i < self->coordinates && (self->effects & MCT_COULOMB) != 0; i++) {
         const double speed = slip(self, from->value, i);
-        const double gain = 2 * h * from->rate[self->first_rate + i];
-        if (speed * (speed + gain) < 0) {
-            to->value[self->first_rate + i] = self->belt_speed;
-            to->rest[self->first_rate + i] = 0;
+        if (speed * (speed + 2 * h * from->rate[rate + i]) < 0) {
+            to->value[rate + i] = self->belt_speed;
+            to->rest[rate + i] = 0;
         }
+    }
+    if (is_distance(self) && from->value[0] + 2 * h * from->rate[0] <= 0) {
+        to->value[0] = fmax(fabs(to->value[0]), from->value[0]);
+        to->value[1] += PI;
+        to->value[rate] = -to->value[rate];
+        to->rest[0] = to->rest[rate] = 0;
     }
     arrive(self, to);
 }
@@ -388,7 +409,7 @@ static bool follow(ledger *self, place *end, account *work)
         }
         if (!well) {
             move(self, &here, change, &next);
-            stop_sliding(self, &here, length * self->dt, &next);
+            pass_kinks(self, &here, length * self->dt, &next);
         }
         if (!is_finite(self, &next) || tries >= MOST_PARTS) {
             return false;
@@ -465,7 +486,7 @@ static void enter(ledger *self, const place *to)
     account work[POWER_COUNT];
     powers done;
     place end;
-    if (!follow(self, &end, work)) {
+    if (self->lost_ticks >= MOST_LOST || !follow(self, &end, work)) {
         self->lost_ticks++;
         add_energies(&self->unexplained, less(to->energy, self->here.energy));
         return;
