@@ -33,7 +33,8 @@ enum {
     MOST_LOST = 20,   /* ticks, after which the rest of the run is not followed */
     MOST_PARTS = 5000 /* tried a tick */
 };
-#define PI 3.14159265358979323846
+#define PI            3.14159265358979323846
+#define BELT_ROUNDING (64 * (double)MCT_REAL_EPSILON) /* of its speed: what is as near rests on it */
 #define STRICT \
     0.05 /* parts of a tick longer than that are taken when they close to a thousandth of the run's rounding */
 #define HELD 1e-7 /* of a friction's size: an acceleration below is rounding */
@@ -201,6 +202,12 @@ static void find_rests(const ledger *self, const mct_evaluation *at, place *here
 static void arrive(ledger *self, place *here)
 {
     mct_evaluation at;
+    for (int i = 0; i < self->coordinates && self->belt_speed != 0; i++) {
+        if (fabs(slip(self, here->value, i)) <= BELT_ROUNDING * fabs(self->belt_speed)) {
+            here->value[self->first_rate + i] = self->belt_speed;
+            here->rest[self->first_rate + i] = 0;
+        }
+    }
     evaluate(self, here->value, &at);
     here->energy = runner_energies(&at);
     find_rests(self, &at, here);
@@ -502,6 +509,17 @@ static void enter(ledger *self, const place *to)
     add_energies(&self->of_stepper, less(to->energy, end.energy));
 }
 
+/* A plant's quaternion has the length 1 to its own rounding. */
+static void normalise(const ledger *self, place *here)
+{
+    double *const q = here->value + self->first_rate - 4;
+    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int i = 0; i < 4; i++) {
+        q[i] /= length;
+        here->rest[self->first_rate - 4 + i] = 0;
+    }
+}
+
 void ledger_tick(ledger *self, const double *value, const double *rest, double input)
 {
     place to;
@@ -509,6 +527,9 @@ void ledger_tick(ledger *self, const double *value, const double *rest, double i
     for (int i = 0; i < self->entries; i++) {
         to.value[i] = value[i] + rest[i];
         to.rest[i] = rest[i] - (to.value[i] - value[i]);
+    }
+    if (self->system->attitude != MCT_ATTITUDE_NONE) {
+        normalise(self, &to);
     }
     self->input = input;
     if (self->calls > 0) { /* the rates there, under the input that is held now */
