@@ -30,8 +30,13 @@ enum {
     ROWS = 8,                                      /* of the extrapolation */
     LARGEST = RUNNER_MAX_STATES + 1 + POWER_COUNT, /* states, time, works */
     HALVINGS = 44,                                 /* of a tick, at most */
-    MOST_PARTS = 200000                            /* tried a tick: half a minute's work */
+    MOST_LOST = 20,   /* ticks, after which the rest of the run is not followed */
+    MOST_PARTS = 5000 /* tried a tick */
 };
+#define PI            3.14159265358979323846
+#define BELT_ROUNDING (64 * (double)MCT_REAL_EPSILON) /* of its speed: what is as near rests on it */
+#define STRICT \
+    0.05 /* parts of a tick longer than that are taken when they close to a thousandth of the run's rounding */
 #define HELD 1e-7 /* of a friction's size: an acceleration below is rounding */
 
 typedef double vector[LARGEST];
@@ -197,6 +202,12 @@ static void find_rests(const ledger *self, const mct_evaluation *at, place *here
 static void arrive(ledger *self, place *here)
 {
     mct_evaluation at;
+    for (int i = 0; i < self->coordinates && self->belt_speed != 0; i++) {
+        if (fabs(slip(self, here->value, i)) <= BELT_ROUNDING * fabs(self->belt_speed)) {
+            here->value[self->first_rate + i] = self->belt_speed;
+            here->rest[self->first_rate + i] = 0;
+        }
+    }
     evaluate(self, here->value, &at);
     here->energy = runner_energies(&at);
     find_rests(self, &at, here);
@@ -218,9 +229,19 @@ static bool turns_round(const ledger *self, const place *from, const double *y, 
     return (self->effects & MCT_COULOMB) != 0 && sense * slip(self, y, i) < 0;
 }
 
-/* Whether dry friction is still what it was where the part began: no sliding has turned round, no rest has ended. */
+/* Whether the first coordinate is a distance from a pivot, which what passes there leaves on the other side. */
+static bool is_distance(const ledger *self)
+{
+    return self->system->coordinates[0].position.minimum > 0;
+}
+
+/* Whether forces are still those of where the part began: no sliding has turned round, no rest has ended, no pivot is
+ * passed. */
 static bool is_smooth(const ledger *self, const place *from, const double *y, const double *rate)
 {
+    if (is_distance(self) && y[0] <= 0) {
+        return false;
+    }
     for (int i = 0; i < self->coordinates; i++) {
         if (turns_round(self, from, y, i) || (from->rests[i] && rate[self->first_rate + i] != 0)) {
             return false;
@@ -280,57 +301,88 @@ static powers works_of(const ledger *self, const double *change)
     return work;
 }
 
-/* Whether kinetic energy has gained what the works bring, to rounding. */
-static bool closes(const ledger *self, const place *from, const place *to, const double *change)
+/* Sizes of what works bring to the kinetic and the magnetic energy; the potential one follows the motion alone. */
+static energies sizes_of(const ledger *self, const double *work)
+{
+    energies sum = {0, 0, 0};
+    for (int i = 0; i < POWER_COUNT; i++) {
+        const energies gain = power_gains(i, work[i], self->effects);
+        sum.kinetic += fabs(gain.kinetic);
+        sum.magnetic += fabs(gain.magnetic);
+    }
+    return sum;
+}
+
+/*
+ * Whether the works of a part of a tick stand still, and the energies have gained what they bring, to rounding: that of
+ * the energies there and of the part's works, and `share` of that of the whole run.
+ */
+static bool closes(const ledger *self, const place *from, const place *to, const double *change,
+                   const double *error, double share)
 {
     const powers work = works_of(self, change);
-    const energies gain = powers_gains(&work, self->effects);
-    const energies gap = less(less(to->energy, from->energy), gain);
-    const double rounding = 8 * (double)MCT_REAL_EPSILON * size_of(self);
-    return fabs(gap.kinetic) <= rounding && fabs(gap.magnetic) <= rounding && fabs(gap.potential) <= rounding;
+    const energies gap = less(less(to->energy, from->energy), powers_gains(&work, self->effects));
+    const energies size = sizes_of(self, work.of);
+    const energies off = sizes_of(self, error);
+    const double least = share * size_of(self);
+    const double kinetic = (double)MCT_REAL_EPSILON * (from->energy.kinetic + size.kinetic + least);
+    const double magnetic = (double)MCT_REAL_EPSILON * (from->energy.magnetic + size.magnetic + least);
+    return off.kinetic <= kinetic && off.magnetic <= magnetic && fabs(gap.kinetic) <= 8 * kinetic &&
+           fabs(gap.magnetic) <= 8 * magnetic;
 }
 
 /* A part of a tick by extrapolation; false when it is too long for that. `rows`: how many it took. */
-static bool advance(ledger *self, const place *from, double h, place *to, double *change, int *rows)
+static bool advance(ledger *self, const place *from, double h, double share, place *to, double *change,
+                    int *rows)
 {
     const int all = self->entries + POWER_COUNT;
     vector table[ROWS];
     for (int k = 0; k < ROWS; k++) {
-        double error = 0;
+        vector gain;
         const bool smooth = midpoint(self, from, h, 2 * (k + 1), table[k]);
         for (int j = k - 1; j >= 0; j--) { /* table[j] becomes the extrapolation by rows j to k */
             const double ratio = (double)(k + 1) / (j + 1);
             const double weight = 1 / (ratio * ratio - 1);
             for (int i = 0; i < all; i++) {
-                const double gain = weight * (table[j + 1][i] - table[j][i]);
-                error = j == 0 && i >= self->entries ? fmax(error, fabs(gain)) : error;
-                table[j][i] = table[j + 1][i] + gain;
+                gain[i] = weight * (table[j + 1][i] - table[j][i]);
+                table[j][i] = table[j + 1][i] + gain[i];
             }
         }
         *rows = k + 1;
+        memcpy(change, table[0], sizeof table[0]);
         if (!smooth) {
-            break;
+            return false;
         }
-        if (k >= 2 && error <= 2 * (double)MCT_REAL_EPSILON * size_of(self)) {
-            memcpy(change, table[0], sizeof table[0]);
+        if (k >= 2) {
             move(self, from, change, to);
-            if (closes(self, from, to, change) && is_smooth(self, from, to->value, to->rate)) {
+            if (closes(self, from, to, change, gain + self->entries, share) &&
+                is_smooth(self, from, to->value, to->rate)) {
                 return true;
             }
         }
     }
-    memcpy(change, table[0], sizeof table[0]);
     return false;
 }
 
-/* What turns round within the smallest part stops there; it goes on at once unless friction holds it. */
-static void stop_sliding(ledger *self, const place *from, place *to)
+/*
+ * What meets a kink within the smallest part. What slows down to rest stops, and goes on at once unless friction holds
+ * it; a distance that comes to nothing grows again, half a turn further.
+ */
+static void pass_kinks(ledger *self, const place *from, double h, place *to)
 {
-    for (int i = 0; i < self->coordinates; i++) {
-        if (turns_round(self, from, to->value, i)) {
-            to->value[self->first_rate + i] = self->belt_speed;
-            to->rest[self->first_rate + i] = 0;
+    const int rate = self->first_rate;
+    for (int i = 0; i < self->coordinates && (self->effects & MCT_COULOMB) != 0; i++) {
+        const double speed = slip(self, from->value, i);
+        if (speed * (speed + 2 * h * from->rate[rate + i]) < 0) {
+            to->value[rate + i] = self->belt_speed;
+            to->rest[rate + i] = 0;
         }
+    }
+    if (is_distance(self) && from->value[0] + 2 * h * from->rate[0] <= 0) {
+        to->value[0] = fmax(fabs(to->value[0]), from->value[0]);
+        to->value[1] += PI;
+        to->value[rate] = -to->value[rate];
+        to->rest[0] = to->rest[rate] = 0;
     }
     arrive(self, to);
 }
@@ -356,14 +408,15 @@ static bool follow(ledger *self, place *end, account *work)
         vector change;
         int rows;
         const double length = fmin(part, left);
-        const bool well = advance(self, &here, length * self->dt, &next, change, &rows);
+        const double share = length > STRICT ? 1e-3 : 8;
+        const bool well = advance(self, &here, length * self->dt, share, &next, change, &rows);
         if (!well && length > least && tries < MOST_PARTS) {
             part = length / 2;
             continue;
         }
         if (!well) {
             move(self, &here, change, &next);
-            stop_sliding(self, &here, &next);
+            pass_kinks(self, &here, length * self->dt, &next);
         }
         if (!is_finite(self, &next) || tries >= MOST_PARTS) {
             return false;
@@ -440,7 +493,7 @@ static void enter(ledger *self, const place *to)
     account work[POWER_COUNT];
     powers done;
     place end;
-    if (!follow(self, &end, work)) {
+    if (self->lost_ticks >= MOST_LOST || !follow(self, &end, work)) {
         self->lost_ticks++;
         add_energies(&self->unexplained, less(to->energy, self->here.energy));
         return;
@@ -456,6 +509,17 @@ static void enter(ledger *self, const place *to)
     add_energies(&self->of_stepper, less(to->energy, end.energy));
 }
 
+/* A plant's quaternion has the length 1 to its own rounding. */
+static void normalise(const ledger *self, place *here)
+{
+    double *const q = here->value + self->first_rate - 4;
+    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int i = 0; i < 4; i++) {
+        q[i] /= length;
+        here->rest[self->first_rate - 4 + i] = 0;
+    }
+}
+
 void ledger_tick(ledger *self, const double *value, const double *rest, double input)
 {
     place to;
@@ -463,6 +527,9 @@ void ledger_tick(ledger *self, const double *value, const double *rest, double i
     for (int i = 0; i < self->entries; i++) {
         to.value[i] = value[i] + rest[i];
         to.rest[i] = rest[i] - (to.value[i] - value[i]);
+    }
+    if (self->system->attitude != MCT_ATTITUDE_NONE) {
+        normalise(self, &to);
     }
     self->input = input;
     if (self->calls > 0) { /* the rates there, under the input that is held now */
