@@ -1,6 +1,5 @@
 """An effect that is off leaves no instruction behind: read from the library's own object files, and as kernels run."""
 
-import json
 import os
 import shlex
 import shutil
@@ -37,11 +36,7 @@ def tags(build):
 
 
 def compile_command(build, system, tag):
-    """How a system's file was compiled, as a list of words."""
-    for entry in json.loads((build / "compile_commands.json").read_text()):
-        if entry["file"].endswith(f"src/systems/{system}.c") and f"mctau_core_{tag}.dir" in entry["command"]:
-            return shlex.split(entry["command"])
-    raise AssertionError(f"no compile command of {system}.c, {tag}")
+    return kernels.compile_command(build, f"src/systems/{system}.c", tag)
 
 
 @pytest.fixture(scope="module")
