@@ -24,7 +24,9 @@ typedef struct {
     mct_real cart_viscous;     /**< kappa_1 [N s/m], 0 when off */
     mct_real pole_viscous;     /**< kappa_2 [N m s], 0 when off */
     mct_real cart_damping;     /**< kappa_1 and the back-emf of a quasi-static motor [N s/m] */
-    mct_real coulomb[2];       /**< dry friction [N], [N m] */
+    mct_real coulomb[2];       /**< dry friction in motion [N], [N m], 0 when off */
+    mct_real hold[2];          /**< and the most that it bears at rest */
+    mct_real drag[2];          /**< by the square of a rate [N s^2/m^2], [N m s^2], 0 when off */
     mct_motor motor;
 } mct_cart_pole_constants;
 

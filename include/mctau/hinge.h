@@ -19,7 +19,8 @@ typedef struct {
     mct_real cosine_moment;   /**< Q [N m], 0 when off */
     mct_real viscous;         /**< [N m s], 0 when off */
     mct_real drag;            /**< [N m s^2], 0 when off */
-    mct_real coulomb;         /**< dry friction [N m], 0 when off */
+    mct_real coulomb;         /**< dry friction in motion [N m], 0 when off */
+    mct_real hold;            /**< and the most that it bears at rest [N m] */
 } mct_hinge;
 
 /** A body that is a list of particles, about any axis through the origin: of particle_pendulum and fixed_axis. */

@@ -21,7 +21,9 @@ typedef struct {
     mct_real arm_viscous;     /**< nu_1 [N m s], 0 when off */
     mct_real wheel_viscous;   /**< nu_2 [N m s], 0 when off */
     mct_real wheel_damping;   /**< nu_2 and the back-emf of a quasi-static motor [N m s] */
-    mct_real coulomb[2];      /**< dry friction [N m] */
+    mct_real coulomb[2];      /**< dry friction in motion [N m], 0 when off */
+    mct_real hold[2];         /**< and the most that it bears at rest */
+    mct_real drag[2];         /**< by the square of a rate [N m s^2], 0 when off */
     mct_real inverse_arm;     /**< 1 / arm_inertia */
     mct_real inverse_wheel;   /**< 1 / wheel_inertia */
     mct_inertia2 inertia;     /**< M and M^-1 */

@@ -9,14 +9,16 @@
 
 /*
  * Corrects the increments dx = (dq, dv) of a step of length h from the velocity v for dry friction of the given
- * force. What comes to rest gets exactly the velocity 0 and travels h/2 times the velocity it had.
+ * force; `hold` is the static one, of what starts at rest. What comes to rest gets exactly the velocity 0 and travels
+ * h/2 times the velocity it had.
  */
-MCT_INLINE void mct_friction1_correct(mct_real inertia, mct_real inverse_inertia, mct_real force, mct_real h,
-                                      mct_real v, mct_real *dx)
+MCT_INLINE void mct_friction1_correct(mct_real inertia, mct_real inverse_inertia, mct_real force,
+                                      mct_real hold, mct_real h, mct_real v, mct_real *dx)
 {
     const mct_real bound = h * force;
+    const mct_real bears = v == 0 ? h * hold : bound;
     const mct_real stop = -inertia * (v + dx[1]);
-    if (force > 0 && stop > -bound && stop < bound) {
+    if (force > 0 && stop >= -bears && stop <= bears) {
         dx[1] = -v;
         dx[0] = MCT_R(0.5) * h * v;
     } else {
@@ -27,9 +29,12 @@ MCT_INLINE void mct_friction1_correct(mct_real inertia, mct_real inverse_inertia
 }
 
 /* Friction at one instant: full size against a motion, and at rest what keeps it at rest, if it can. */
-MCT_INLINE mct_real mct_friction1_force(mct_real size, mct_real v, mct_real others)
+MCT_INLINE mct_real mct_friction1_force(mct_real size, mct_real hold, mct_real v, mct_real others)
 {
-    return v > 0 ? -size : v < 0 ? size : mct_clamp(-others, size);
+    if (v == 0 && others >= -hold && others <= hold) {
+        return -others;
+    }
+    return v > 0 || (v == 0 && others > 0) ? -size : size;
 }
 
 #endif

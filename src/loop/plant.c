@@ -115,7 +115,7 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
         mct_message_add(why, plant->system->name);
         return MCT_ERROR_UNSUITED;
     }
-    if (scene->stride > 1 && plant->system->motion == NULL) {
+    if (scene->stride > 1 && (plant->system->motion == NULL || (plant->effects & MCT_COULOMB_EXACT))) {
         mct_message_add(why, "scene.stride: found a step over several ticks, for which ");
         mct_message_add(why, plant->system->name);
         mct_message_add(why, " has no series to hand");

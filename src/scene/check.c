@@ -328,8 +328,14 @@ static mct_status examine_stepper(const mct_scene *scene, const mct_system *syst
         mct_message_add(sentence, system->name);
         mct_message_add(sentence, " with ");
         add_effects(sentence, effects);
-        if (stepper->needs_smooth && (effects & (MCT_COULOMB | MCT_DRAG))) {
+        if (stepper->needs_smooth && (effects & (MCT_COULOMB_MOREAU | MCT_DRAG))) {
+            const uint32_t exact = (effects & ~(uint32_t)MCT_COULOMB) | MCT_COULOMB_EXACT;
             mct_message_add(sentence, ", for a series ends where friction has a kink");
+            if (system->kernel(scene->stepper, exact & MCT_KERNEL_EFFECTS) != NULL) {
+                mct_message_add(sentence, ", unless coulomb = \"exact\" finds it");
+            }
+        } else if (effects & MCT_COULOMB_EXACT) {
+            mct_message_add(sentence, ", for coulomb = \"exact\" is found on a series");
         }
         mct_message_add(sentence, "; allowed ");
         add_suitable_steppers(scene, sentence);
@@ -388,6 +394,10 @@ static mct_status examine_stride(const mct_scene *scene, const mct_system *syste
         mct_message_add(sentence, " with stepper ");
         mct_message_add(sentence, mct_steppers[scene->stepper].name);
         mct_message_add(sentence, ", which has no series to read ticks off; allowed 1, or stepper taylor12");
+        return MCT_ERROR_UNSUITED;
+    }
+    if (scene->effects & MCT_COULOMB_EXACT) {
+        mct_message_add(sentence, " with coulomb = \"exact\", which cuts the series; allowed 1");
         return MCT_ERROR_UNSUITED;
     }
     if (system->motion == NULL) {

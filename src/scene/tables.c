@@ -345,7 +345,9 @@ int32_t mct_best_stepper(const mct_scene *scene)
             best = i;
         }
     }
-    return best < 0 ? MCT_STEPPER_RK4 : best;
+    /* Exact friction wants a series where nothing else is as exact. */
+    const int32_t otherwise = (scene->effects & MCT_COULOMB_EXACT) ? MCT_STEPPER_TAYLOR6 : MCT_STEPPER_RK4;
+    return best < 0 ? otherwise : best;
 }
 
 void mct_scene_defaults(mct_scene *scene, int system)

@@ -15,17 +15,18 @@
 
 #include "advance.h"
 
-#define MCT_TAYLOR_TERMS 13 /* of order 12 */
+#define MCT_TAYLOR_TERMS 13 /* of order 12, the highest of this stepper */
+#define MCT_SERIES_TERMS 18 /* of order 17, the block's */
 
 /* The sum of nothing. Not +0, which changes -0: compilers keep that addition, and a series waits for it. */
 #define MCT_NOTHING MCT_R(-0.0)
 
-typedef mct_real mct_series[MCT_TAYLOR_TERMS];
+typedef mct_real mct_series[MCT_SERIES_TERMS];
 
 /* 1 / (n + 1): times h, it takes term n of a rate to term n + 1 of what has that rate. */
 MCT_INLINE mct_real mct_series_share(int n)
 {
-    static const mct_real shares[MCT_TAYLOR_TERMS] = {
+    static const mct_real shares[MCT_SERIES_TERMS] = {
         1,
         MCT_R(1.0 / 2),
         MCT_R(1.0 / 3),
@@ -39,6 +40,11 @@ MCT_INLINE mct_real mct_series_share(int n)
         MCT_R(1.0 / 11),
         MCT_R(1.0 / 12),
         MCT_R(1.0 / 13),
+        MCT_R(1.0 / 14),
+        MCT_R(1.0 / 15),
+        MCT_R(1.0 / 16),
+        MCT_R(1.0 / 17),
+        MCT_R(1.0 / 18),
     };
     return shares[n];
 }

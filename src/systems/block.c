@@ -11,15 +11,16 @@
  * Differences   slope, spring, belt, the forces in time are ours.
  * Constraint    the plane: e = m xdd - f = m g cos a along its normal. Friction is a force from outside, no
  *               part of e.
- * Steppers      seed, euler, leap, rk4 with Moreau's clamp (effects/friction1.h, with mu_s at rest): first
- *               order where the block starts or stops. expo: the motion is linear between such events, so its
- *               series in time is summed to rounding, and the events are located within the step: exact,
+ * Steppers      all with Moreau's clamp (effects/friction1.h, with mu_s at rest): first order where the block starts or
+ *               stops. expo: between such events the motion is linear, so its series in time is summed to rounding;
+ *               with exact friction the events are located within the step (effects/friction_exact.h): exact,
  *               however large the step.
  * Validity      mu_s >= mu_d; the block does not leave the plane or tip. Spring and sine turn at most 1 rad a
  *               step.
  */
 #include "mctau/block.h"
 
+#include "../effects/friction_exact.h"
 #include "../steppers/euler.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
@@ -306,225 +307,72 @@ MCT_INLINE void kick_middle(const void *constants, unsigned effects, const mct_r
 
 /* --- the exact motion --- */
 
-enum {
-    TERMS = MCT_BLOCK_ORDER + 1,
-    PHASES = 5,     /* of sticking and sliding in a step; the last is not looked into for an event */
-    ITERATIONS = 12 /* of Newton's method, kept within its bracket */
-};
-
-/* The motion of one phase, as polynomials in the fraction of a step that has passed since its start. */
-typedef struct {
-    mct_real position[TERMS + 1];
-    mct_real velocity[TERMS + 1];
-    mct_real force[TERMS + 1]; /* all but friction at rest */
-} series;
-
-static mct_real value_at(const mct_real *c, int32_t order, mct_real s)
-{
-    mct_real sum = c[order];
-    for (int32_t n = order - 1; n >= 0; n--) {
-        sum = sum * s + c[n];
-    }
-    return sum;
-}
-
-static mct_real slope_at(const mct_real *c, int32_t order, mct_real s)
-{
-    mct_real sum = (mct_real)order * c[order];
-    for (int32_t n = order - 1; n >= 1; n--) {
-        sum = sum * s + (mct_real)n * c[n];
-    }
-    return sum;
-}
-
-/* What a polynomial gains from 0 to s. */
-static inline mct_real gain_to(const mct_real *c, int32_t order, mct_real s)
-{
-    return s * value_at(c + 1, order - 1, s);
-}
-
 /*
- * m dv/dt = F - k x and dx/dt = v, term by term, from a position, a velocity and a clock; `push` is constant.
- * A block that sticks is not accelerated.
+ * The velocity's series, from m dv/dt = F - k x - R and dx/dt = v, term by term. A block that sticks is not accelerated:
+ * its load is all but friction.
  */
-static inline void expand(const constants_t *k, unsigned effects, mct_real position, mct_real velocity,
-                          const mct_real *clock, mct_real push, bool sticks, series *motion)
+MCT_INLINE void phase_series(const void *constants, unsigned effects, int order, const mct_real *x,
+                             mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
 {
-    static const mct_real share[TERMS] = {
-        MCT_R(1.0),      MCT_R(1.0 / 2),  MCT_R(1.0 / 3),  MCT_R(1.0 / 4),  MCT_R(1.0 / 5),  MCT_R(1.0 / 6),
-        MCT_R(1.0 / 7),  MCT_R(1.0 / 8),  MCT_R(1.0 / 9),  MCT_R(1.0 / 10), MCT_R(1.0 / 11), MCT_R(1.0 / 12),
-        MCT_R(1.0 / 13), MCT_R(1.0 / 14), MCT_R(1.0 / 15), MCT_R(1.0 / 16), MCT_R(1.0 / 17), MCT_R(1.0 / 18)};
-    const mct_real inertia = sticks ? 0 : k->step_over_mass;
-    mct_real s = 0;
-    mct_real c = 0;
+    const constants_t *k = constants;
+    mct_real *const velocity = rates[0];
+    mct_real direction = 0;
+    mct_real inertia = k->step_over_mass;
+    mct_real position = x[0]; /* the next term of the position, and of sine and cosine */
+    mct_real s = 0, c = 0, ramp = 0;
+    if (effects & MCT_COULOMB_EXACT) {
+        direction = mode->direction[0];
+        inertia = direction == 0 ? 0 : inertia;
+    }
     if (effects & MCT_FORCING) {
-        mct_sincos(clock[0], &s, &c);
+        const mct_real passed = (effects & MCT_COULOMB_EXACT) ? mode->passed : 0;
+        mct_sincos(x[PHASE] + passed * k->phase_step, &s, &c);
         s *= k->amplitude;
         c *= k->amplitude;
+        ramp = k->ramp * (x[TIME] + passed * k->step.h);
     }
-    motion->position[0] = position;
-    motion->velocity[0] = velocity;
-    for (int32_t n = 0; n < k->order; n++) {
-        mct_real force = 0;
+    velocity[0] = x[1];
+    for (int n = 0; n < order; n++) {
+        mct_real load = 0;
         if (n == 0) {
-            force = steady(k, effects, position, push);
+            load = steady(k, effects, position, u);
         } else if (effects & MCT_SPRING) {
-            force = -k->spring * motion->position[n];
+            load = -k->spring * position;
         }
         if (effects & MCT_FORCING) {
-            force += s; /* the n-th term of prescribed() */
+            load += s; /* the n-th term of prescribed() */
             if (n == 0) {
-                force += k->force + k->ramp * clock[1];
+                load += k->force + ramp;
             } else if (n == 1) {
-                force += k->ramp * k->step.h;
+                load += k->ramp * k->step.h;
             }
         }
-        motion->force[n] = force;
-        motion->velocity[n + 1] = inertia * force * share[n];
-        motion->position[n + 1] = k->step.h * motion->velocity[n] * share[n];
-        const mct_real turned = k->phase_step * share[n]; /* the next terms of sine and cosine */
+        mct_real force = load;
+        if (effects & MCT_COULOMB_EXACT) {
+            loads[0][n] = load;
+            force -= n == 0 ? direction * k->dynamic_friction : 0;
+        }
+        const mct_real share = mct_series_share(n);
+        velocity[n + 1] = inertia * force * share;
+        position = k->step.h * velocity[n] * share;
+        const mct_real turned = k->phase_step * share;
         const mct_real next = turned * c;
         c = -turned * s;
         s = next;
     }
 }
 
-/* A root in [0, end] of a polynomial that is at least 0 at 0 and negative at the end. */
-static mct_real root_of(const mct_real *c, int32_t order, mct_real end)
-{
-    mct_real low = 0;
-    mct_real high = end;
-    mct_real s = end;
-    for (int i = 0; i < ITERATIONS; i++) {
-        const mct_real value = value_at(c, order, s);
-        if (value < 0) {
-            high = s;
-        } else {
-            low = s;
-        }
-        const mct_real next = s - value / slope_at(c, order, s);
-        s = next >= low && next <= high ? next : MCT_R(0.5) * (low + high); /* also where the slope is 0 */
-    }
-    return s;
-}
-
-/* Where a polynomial that is at least 0 at 0 first becomes negative; `end` when it does not do so before. */
-static mct_real first_crossing(const mct_real *c, int32_t order, mct_real end)
-{
-    if (value_at(c, order, end) < 0) {
-        return root_of(c, order, end);
-    }
-    /* It may have dipped below in between: down at the start, up at the end. */
-    if (!(c[1] < 0 && slope_at(c, order, end) > 0)) {
-        return end;
-    }
-    mct_real downward[TERMS + 1] = {0}; /* - slope */
-    for (int32_t n = 0; n < order; n++) {
-        downward[n] = -(mct_real)(n + 1) * c[n + 1];
-    }
-    const mct_real lowest = root_of(downward, order - 1, end);
-    return value_at(c, order, lowest) < 0 ? root_of(c, order, lowest) : end;
-}
-
-/* When a block that slides in a direction (+-1) comes to rest on the belt. */
-static mct_real stop_of(const constants_t *k, const series *motion, mct_real direction, mct_real end)
-{
-    mct_real relative[TERMS + 1];
-    const mct_real start = motion->velocity[0] - k->belt_speed;
-    relative[0] = direction * start;
-    for (int32_t n = 1; n <= k->order; n++) {
-        relative[n] = direction * motion->velocity[n];
-    }
-    /* From rest, the start itself is no stop: the root at 0 is divided out. */
-    return start == 0 ? first_crossing(relative + 1, k->order - 1, end)
-                      : first_crossing(relative, k->order, end);
-}
-
-/* When the force on a block at rest exceeds what holds it, and in which direction it leaves. */
-static mct_real break_away_of(const constants_t *k, const series *motion, mct_real end, mct_real *direction)
-{
-    mct_real soonest = end;
-    for (int i = 0; i < 2; i++) {
-        const mct_real side = i == 0 ? MCT_R(1.0) : MCT_R(-1.0);
-        mct_real spare[TERMS + 1];
-        spare[0] = k->static_friction - side * motion->force[0];
-        for (int32_t n = 1; n < k->order; n++) {
-            spare[n] = -side * motion->force[n];
-        }
-        const mct_real crossing = first_crossing(spare, k->order - 1, soonest);
-        if (crossing < soonest) {
-            soonest = crossing;
-            *direction = side;
-        }
-    }
-    return soonest;
-}
-
-/*
- * Increments of a step under friction: phases of sticking and sliding, each ended by an event within the step
- * or by the end of it.
- */
-static inline void locate_events(const constants_t *k, unsigned effects, const mct_real *x, mct_real u,
-                                 mct_real *dx)
-{
-    series motion;
-    mct_real velocity = x[1];
-    mct_real direction = 0; /* of sliding on the belt; 0: not yet known */
-    mct_real left = 1;      /* of the step */
-    dx[0] = 0;
-    dx[1] = 0;
-    for (int phase = 1; phase <= PHASES; phase++) {
-        const mct_real passed = 1 - left;
-        mct_real clock[MCT_PHASES] = {0};
-        if (effects & MCT_FORCING) {
-            clock[0] = x[PHASE] + passed * k->phase_step;
-            clock[1] = x[TIME] + passed * k->step.h;
-        }
-        const mct_real position = x[0] + dx[0];
-        const mct_real relative = velocity - k->belt_speed;
-        if (is_at_rest(k, relative)) {
-            velocity = k->belt_speed;
-            dx[1] = velocity - x[1];
-            if (direction == 0) {
-                const mct_real force = smooth_force(k, effects, position, clock[0], clock[1], u);
-                direction = size_of(force) <= k->static_friction ? 0 : sign_of(force);
-            }
-        } else {
-            direction = sign_of(relative);
-        }
-        const bool sticks = direction == 0;
-        const mct_real push = u - direction * k->dynamic_friction;
-        expand(k, effects, position, velocity, clock, push, sticks, &motion);
-        mct_real length = left;
-        if (phase < PHASES) {
-            length =
-                sticks ? break_away_of(k, &motion, left, &direction) : stop_of(k, &motion, direction, left);
-        }
-        dx[0] += gain_to(motion.position, k->order, length);
-        dx[1] += sticks ? 0 : gain_to(motion.velocity, k->order, length);
-        if (!(length < left)) {
-            return;
-        }
-        left -= length;
-        velocity = k->belt_speed; /* every event happens at the belt's speed */
-        dx[1] = velocity - x[1];
-        if (!sticks) {
-            direction = 0;
-        }
-    }
-}
-
 MCT_INLINE void exact(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
-    turn_clock(k, effects, dx);
-    if ((effects & MCT_COULOMB) && k->static_friction > 0) {
-        locate_events(k, effects, x, u, dx);
+    if (effects & MCT_COULOMB_EXACT) {
+        const mct_dry dry = {{k->static_friction}, k->belt_speed, k->rest_speed};
+        mct_friction_exact(phase_series, k, dry, k->step.h, effects, k->order, 1, x, u, dx);
     } else {
-        series motion;
-        expand(k, effects, x[0], x[1], x + PHASE, u, false, &motion);
-        dx[0] = gain_to(motion.position, k->order, 1);
-        dx[1] = gain_to(motion.velocity, k->order, 1);
+        mct_series rates[1];
+        phase_series(k, effects, k->order, x, u, NULL, rates, NULL);
+        mct_series_increments(rates[0], k->step.h, k->order, &dx[0], &dx[1]);
     }
+    finish(k, effects, x, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -577,18 +425,18 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[0][2] = mct_hyperdual_constant(0);
 }
 
-#define SWITCHES MCT_GRAVITY, MCT_COULOMB_MOREAU, MCT_SPRING, MCT_FORCING
-static const uint32_t switches[] = {SWITCHES, 0};
+#define SWITCHES MCT_GRAVITY, MCT_SPRING, MCT_FORCING
+static const uint32_t switches[] = {SWITCHES, MCT_COULOMB_MOREAU, MCT_COULOMB_EXACT, 0};
 
-MCT_KERNELS_4(seed, k->step.remainder, 1, SWITCHES,
-              (mct_seed(derivative, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
-MCT_KERNELS_4(euler, k->step.remainder, 1, SWITCHES,
-              (mct_euler(kick, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
-MCT_KERNELS_4(leap, k->step.remainder, 1, SWITCHES,
-              (mct_leap(kick_middle, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
-MCT_KERNELS_4(rk4, k->step.sixth_remainder, 1, SWITCHES,
-              (runge_kutta(k, effects, x, u, dx), finish(k, effects, x, dx)))
-MCT_KERNELS_4(expo, k->step.remainder, 1, SWITCHES, exact(k, effects, x, u, dx))
+MCT_SMOOTH_KERNELS_4(seed, k->step.remainder, 1, 5, SWITCHES, MCT_COULOMB_MOREAU,
+                     (mct_seed(derivative, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
+MCT_SMOOTH_KERNELS_4(euler, k->step.remainder, 1, 5, SWITCHES, MCT_COULOMB_MOREAU,
+                     (mct_euler(kick, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
+MCT_SMOOTH_KERNELS_4(leap, k->step.remainder, 1, 5, SWITCHES, MCT_COULOMB_MOREAU,
+                     (mct_leap(kick_middle, k, k->step, effects, 1, x, u, dx), finish(k, effects, x, dx)))
+MCT_SMOOTH_KERNELS_4(rk4, k->step.sixth_remainder, 1, 5, SWITCHES, MCT_COULOMB_MOREAU,
+                     (runge_kutta(k, effects, x, u, dx), finish(k, effects, x, dx)))
+MCT_DRY_KERNELS_3(expo, k->step.remainder, 1, SWITCHES, exact(k, effects, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -610,7 +458,7 @@ const mct_system mct_block = {
     .parameters = parameters,
     .phases = phases,
     .input_without_motor = &force_field,
-    .effects = MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_SPRING | MCT_FORCING,
+    .effects = MCT_GRAVITY | MCT_COULOMB | MCT_SPRING | MCT_FORCING,
     .standard_effects = MCT_GRAVITY | MCT_COULOMB_MOREAU | MCT_FORCING,
     .particle_count = 1,
     .particle_names = particle_names,

@@ -19,6 +19,7 @@
 #include "mctau/cart_pole.h"
 
 #include "../effects/friction.h"
+#include "../effects/friction_exact.h"
 #include "../effects/motor.h"
 #include "../steppers/euler.h"
 #include "../steppers/leap.h"
@@ -41,6 +42,9 @@ enum {
     POLE_FRICTION,
     CART_COULOMB,
     POLE_COULOMB,
+    STATIC_RATIO,
+    CART_DRAG,
+    POLE_DRAG,
     GRAVITY,
     TORQUE_CONSTANT,
     BACK_EMF_CONSTANT,
@@ -65,6 +69,11 @@ static const mct_field parameters[PARAMETERS] = {
     [CART_COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "cart_coulomb", "N", 0, 1e6, 0, "dry friction of the cart"),
     [POLE_COULOMB] =
         MCT_COEFFICIENT(MCT_COULOMB, "pole_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [STATIC_RATIO] = MCT_STATIC_RATIO,
+    [CART_DRAG] = MCT_COEFFICIENT(MCT_DRAG, "cart_drag", "N s^2/m^2", 0, 1e6, 0,
+                                  "force of the air on the cart by the square of its velocity"),
+    [POLE_DRAG] = MCT_COEFFICIENT(MCT_DRAG, "pole_drag", "N m s^2", 0, 1e6, 0,
+                                  "torque of the air on the pole by the square of its rate"),
     [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
     [TORQUE_CONSTANT] =
         MCT_COEFFICIENT(MCT_MOTOR, "torque_constant", "N m/A", 0, 1e4, 0.00767, "motor torque per current"),
@@ -124,6 +133,10 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->pole_viscous = (mct_real)(viscous ? p[POLE_FRICTION] : 0);
     k->coulomb[0] = (mct_real)(coulomb ? p[CART_COULOMB] : 0);
     k->coulomb[1] = (mct_real)(coulomb ? p[POLE_COULOMB] : 0);
+    k->hold[0] = (mct_real)(coulomb ? p[STATIC_RATIO] * p[CART_COULOMB] : 0);
+    k->hold[1] = (mct_real)(coulomb ? p[STATIC_RATIO] * p[POLE_COULOMB] : 0);
+    k->drag[0] = (mct_real)(effects & MCT_DRAG ? p[CART_DRAG] : 0);
+    k->drag[1] = (mct_real)(effects & MCT_DRAG ? p[POLE_DRAG] : 0);
     const mct_status status =
         mct_motor_prepare(&k->motor, effects, p[GEAR_RATIO] / p[PULLEY_RADIUS], p[TORQUE_CONSTANT],
                           p[BACK_EMF_CONSTANT], p[RESISTANCE], p[INDUCTANCE], h);
@@ -143,7 +156,13 @@ MCT_INLINE bool is_cart_damped(unsigned effects)
 /* Whether anything acts on the pole. A compiler may not drop a product with 0: what is off is left out by hand. */
 MCT_INLINE bool is_pole_loaded(unsigned effects)
 {
-    return (effects & (MCT_GRAVITY | MCT_VISCOUS)) != 0;
+    return (effects & (MCT_GRAVITY | MCT_VISCOUS | MCT_DRAG)) != 0;
+}
+
+/* Drag by the square as a damping, which grows with the rate. */
+MCT_INLINE mct_real drag_of(const constants_t *k, int i, mct_real rate)
+{
+    return k->drag[i] * (rate < 0 ? -rate : rate);
 }
 
 /* a = M^-1 (f1, f2), where f is tau - C v. */
@@ -179,6 +198,10 @@ MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct
     if (effects & MCT_VISCOUS) {
         f2 -= k->pole_viscous * thd;
     }
+    if (effects & MCT_DRAG) {
+        f1 -= drag_of(k, 0, pd) * pd;
+        f2 -= drag_of(k, 1, thd) * thd;
+    }
     dx[0] = pd;
     dx[1] = thd;
     solve(k, effects, s, c, f1, f2, dx + 2);
@@ -203,16 +226,17 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
 MCT_INLINE void impulse(const constants_t *k, unsigned effects, mct_real s, mct_real c, mct_real e11,
                         mct_real bilinear, mct_real e22, mct_real p1, mct_real p2, mct_real *dv)
 {
-    const bool cart_damped = (effects & (MCT_VISCOUS | MCT_MOTOR)) != 0;
+    const bool cart_damped = (effects & (MCT_VISCOUS | MCT_MOTOR | MCT_DRAG)) != 0;
+    const bool pole_damped = (effects & (MCT_VISCOUS | MCT_DRAG)) != 0;
     const mct_real m12 = k->moment * c;
     const mct_real a11 = cart_damped ? k->total_mass + e11 : k->total_mass;
     const mct_real a12 = m12 - bilinear;
-    const mct_real a22 = (effects & MCT_VISCOUS) ? k->inertia + e22 : k->inertia;
+    const mct_real a22 = pole_damped ? k->inertia + e22 : k->inertia;
     const mct_real det_M = k->inertia * (k->cart_mass + k->pole_mass * s * s);
     const mct_real drift = bilinear * m12;
-    const mct_real det = (effects & MCT_VISCOUS) ? det_M + (e11 * a22 + k->total_mass * e22 + drift)
-                         : cart_damped           ? det_M + (e11 * a22 + drift)
-                                                 : det_M + drift;
+    const mct_real det = pole_damped   ? det_M + (e11 * a22 + k->total_mass * e22 + drift)
+                         : cart_damped ? det_M + (e11 * a22 + drift)
+                                       : det_M + drift;
     const mct_real inverse = 1 / det;
     if (!is_pole_loaded(effects)) {
         dv[0] = inverse * (a22 * p1);
@@ -221,6 +245,18 @@ MCT_INLINE void impulse(const constants_t *k, unsigned effects, mct_real s, mct_
     }
     dv[0] = inverse * (a22 * p1 - a12 * p2);
     dv[1] = inverse * (a11 * p2 - m12 * p1);
+}
+
+/* Drag is bilinear in the old rate and the new one. */
+MCT_INLINE void take_drag(const constants_t *k, mct_real pd, mct_real thd, mct_real *f1, mct_real *f2,
+                          mct_real *e11, mct_real *e22)
+{
+    const mct_real on_cart = drag_of(k, 0, pd);
+    const mct_real on_pole = drag_of(k, 1, thd);
+    *f1 -= on_cart * pd;
+    *f2 -= on_pole * thd;
+    *e11 += k->step.h * on_cart;
+    *e22 += k->step.h * on_pole;
 }
 
 /* Kick of `euler`: damping and current implicit, h known to the constants. */
@@ -252,6 +288,9 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
     if (effects & MCT_VISCOUS) {
         f2 -= k->pole_viscous * thd;
         e22 = h * k->pole_viscous;
+    }
+    if (effects & MCT_DRAG) {
+        take_drag(k, pd, thd, &f1, &f2, &e11, &e22);
     }
     impulse(k, effects, s, c, e11, 0, e22, h * f1, h * f2, dx + 2);
 }
@@ -288,6 +327,9 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
         f2 -= k->pole_viscous * thd;
         e22 = half * k->pole_viscous;
     }
+    if (effects & MCT_DRAG) {
+        take_drag(k, pd, thd, &f1, &f2, &e11, &e22);
+    }
     impulse(k, effects, s, c, e11, h * centrifugal, e22, h * f1, h * f2, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_change(&k->motor, u, pd, x[4], dx[2]);
@@ -296,15 +338,17 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
 
 /*
  * Of Lagrange's equations, by terms: with c w for cos th thd, the first one is (m1 + m2) pd + m2 l c w = integral of
- * f - k1 pd, which spares the centrifugal term; c w and s w are the rates of sine and cosine, too.
+ * f - k1 pd, which spares the centrifugal term; c w and s w are the rates of sine and cosine, too. In a mode of exact
+ * friction, what is at rest has an unlimited mass; the load on it is what its own equation leaves.
  */
-MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_series *rates)
+MCT_INLINE void phase_series(const void *constants, unsigned effects, int order, const mct_real *x,
+                             mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
     mct_real *const v = rates[0], *const w = rates[1], *const current = rates[2];
-    mct_series s, c, a; /* a: accelerations of the cart, times h */
+    mct_series s, c, a;      /* a: accelerations of the cart, times h */
+    mct_series carts, poles; /* impulses that change the rates */
     mct_sincos(x[1], &s[0], &c[0]);
     v[0] = x[2];
     w[0] = x[3];
@@ -314,6 +358,20 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
     mct_real to_v[2], to_w[2]; /* by a unit of impulse on cart and pole */
     solve(k, MCT_GRAVITY, s[0], c[0], 1, 0, to_v);
     solve(k, MCT_GRAVITY, s[0], c[0], 0, 1, to_w);
+    mct_real against[2] = {0, 0}; /* dynamic friction */
+    mct_real drag[2] = {0, 0};
+    if (effects & MCT_COULOMB_EXACT) {
+        const bool is_held[2] = {mode->direction[0] == 0, mode->direction[1] == 0};
+        if (is_held[0] || is_held[1]) {
+            to_v[0] = is_held[0] ? 0 : 1 / k->total_mass;
+            to_v[1] = to_w[0] = 0;
+            to_w[1] = is_held[1] ? 0 : 1 / k->inertia;
+        }
+        for (int i = 0; i < 2; i++) {
+            against[i] = mode->direction[i] * k->coulomb[i];
+            drag[i] = mode->direction[i] * k->drag[i];
+        }
+    }
     mct_real cw = c[0] * w[0];
     MCT_UNROLL
     for (int n = 0; n < order; n++) {
@@ -339,6 +397,14 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
         if (effects & MCT_GRAVITY) {
             f2 = k->weight_moment * s[n];
         }
+        if ((effects & MCT_COULOMB_EXACT) && n == 0) {
+            f1 -= against[0];
+            f2 -= against[1];
+        }
+        if (effects & MCT_DRAG) {
+            f1 -= drag[0] * mct_series_product(v, v, n);
+            f2 -= drag[1] * mct_series_product(w, w, n);
+        }
         if (is_cart_damped(effects)) {
             f1 -= k->cart_damping * v[n];
         }
@@ -349,19 +415,41 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
         const mct_real on_pole = share * f2 - (k->moment * part) * ca;
         v[n + 1] = to_v[0] * on_cart + to_w[0] * on_pole;
         w[n + 1] = to_v[1] * on_cart + to_w[1] * on_pole;
+        carts[n] = on_cart;
+        poles[n] = on_pole;
         a[n] = (mct_real)(n + 1) * v[n + 1];
         cw += c[n + 1] * w[0] + c[0] * w[n + 1];
         if (effects & MCT_MOTOR_INDUCTIVE) {
             current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[n], current[n]);
         }
     }
+    if ((effects & MCT_COULOMB_EXACT) && (mode->direction[0] == 0 || mode->direction[1] == 0)) {
+        const mct_real coupling = k->moment * c[0];
+        const mct_real per_step = 1 / h;
+        for (int n = 0; n < order; n++) {
+            const mct_real rate = (mct_real)(n + 1) * per_step;
+            loads[0][n] = rate * (carts[n] - coupling * w[n + 1]);
+            loads[1][n] = rate * (poles[n] - coupling * v[n + 1]);
+        }
+    }
+}
+
+MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_series *rates)
+{
+    phase_series(constants, effects, order, x, u, NULL, rates, NULL);
 }
 
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const constants_t *k = constants;
-    mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
+    if (effects & MCT_COULOMB_EXACT) {
+        const mct_dry dry = {{k->hold[0], k->hold[1]}, 0, 0};
+        mct_friction_exact(phase_series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
+    } else {
+        mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
+    }
 }
 
 static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
@@ -378,16 +466,17 @@ static mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
                           {inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia}};
 }
 
-/* Dry friction at the middle of the step. */
-static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                            mct_real *dx)
+/* Moreau's friction at the middle of a step; `angle` is one near it, whose sine and cosine the stepper has taken. */
+MCT_INLINE void slide(const constants_t *k, unsigned effects, mct_real angle, const mct_real *x, mct_real *dx)
 {
-    (void)effects;
-    (void)u;
-    const constants_t *k = constants;
-    mct_real s, c;
-    mct_sincos(x[1] + MCT_R(0.5) * dx[1], &s, &c);
-    mct_friction_correct(inertia_at(k, s, c), k->coulomb, k->step.h, x + 2, dx);
+    if (!(effects & MCT_COULOMB_MOREAU)) {
+        return;
+    }
+    const mct_real middle = x[1] + MCT_R(0.5) * dx[1];
+    mct_real s0, c0, s, c;
+    mct_sincos(angle, &s0, &c0);
+    mct_sincos_near(middle, middle - angle, s0, c0, &s, &c);
+    mct_friction_correct(inertia_at(k, s, c), k->coulomb, k->hold, k->step.h, x + 2, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -413,12 +502,15 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     }
     const mct_real cart_viscous = -k->cart_viscous * pd;
     const mct_real pole_viscous = -k->pole_viscous * thd;
-    const mct_real smooth[2] = {drive + cart_viscous - out->Cv[0], k->weight_moment * s + pole_viscous};
+    const mct_real cart_drag = -drag_of(k, 0, pd) * pd;
+    const mct_real pole_drag = -drag_of(k, 1, thd) * thd;
+    const mct_real smooth[2] = {drive + cart_viscous + cart_drag - out->Cv[0],
+                                k->weight_moment * s + pole_viscous + pole_drag};
     mct_real dry[2];
-    mct_friction_force(inertia_at(k, s, c), k->coulomb, x + 2, smooth, dry);
+    mct_friction_force(inertia_at(k, s, c), k->coulomb, k->hold, x + 2, smooth, dry);
     solve(k, MCT_KERNEL_EFFECTS, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
-    out->tau[0] = drive + cart_viscous + dry[0];
-    out->tau[1] = k->weight_moment * s + pole_viscous + dry[1];
+    out->tau[0] = drive + cart_viscous + cart_drag + dry[0];
+    out->tau[1] = k->weight_moment * s + pole_viscous + pole_drag + dry[1];
 
     const mct_real a = out->acceleration[0];
     const mct_real alpha = out->acceleration[1];
@@ -440,7 +532,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy =
         MCT_R(0.5) * (k->total_mass * pd * pd + k->inertia * thd * thd) + k->moment * c * pd * thd;
     out->potential_energy = k->weight_moment * c;
-    out->power_viscous = cart_viscous * pd + pole_viscous * thd;
+    out->power_viscous = (cart_viscous + cart_drag) * pd + (pole_viscous + pole_drag) * thd;
     out->power_coulomb = dry[0] * pd + dry[1] * thd;
     mct_motor_powers(&k->motor, effects, u, pd, out);
 }
@@ -452,8 +544,10 @@ static void accelerate(const void *constants, uint32_t effects, const mct_real *
     const mct_real thd = x[3];
     mct_real s, c;
     mct_sincos(x[1], &s, &c);
-    solve(k, MCT_KERNEL_EFFECTS, s, c, force - k->cart_viscous * x[2] + k->moment * s * thd * thd,
-          k->weight_moment * s - k->pole_viscous * thd, a);
+    const mct_real cart_damping = k->cart_viscous + drag_of(k, 0, x[2]);
+    const mct_real pole_damping = k->pole_viscous + drag_of(k, 1, thd);
+    solve(k, MCT_KERNEL_EFFECTS, s, c, force - cart_damping * x[2] + k->moment * s * thd * thd,
+          k->weight_moment * s - pole_damping * thd, a);
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
@@ -502,10 +596,19 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
     };
 }
 
-MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 1, k, k->step, effects, 2, x, u, dx))
+#define friction mct_no_friction /* the steppers here see to it, which know a sine near the middle */
+
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, seed, k->step.remainder,
+                    (mct_seed(derivative, k, k->step, effects, 2, x, u, dx), slide(k, effects, x[1], x, dx)))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, euler, k->step.remainder,
+                    (mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx),
+                     slide(k, effects, x[1], x, dx)))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, leap, k->step.remainder,
+                    (mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx),
+                     slide(k, effects, x[1] + k->step.half * x[3], x, dx)))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, rk4, k->step.sixth_remainder,
+                    (mct_rk4(derivative_at, 1, k, k->step, effects, 2, x, u, dx),
+                     slide(k, effects, x[1], x, dx)))
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
@@ -541,7 +644,7 @@ const mct_system mct_cart_pole = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &force_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_MOTOR | MCT_SATURATION,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_DRAG | MCT_MOTOR | MCT_SATURATION,
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_QUASI_STATIC | MCT_SATURATION_VOLTAGE,
     .particle_count = 2,
     .particle_names = particle_names,

@@ -16,7 +16,7 @@
 #include "mctau/matrix.h"
 #include "systems.h"
 
-enum { AXIS, GRAVITY = AXIS + 3, FRICTION = GRAVITY + 3, COULOMB, PARAMETERS };
+enum { AXIS, GRAVITY = AXIS + 3, FRICTION = GRAVITY + 3, COULOMB, STATIC_RATIO, PARAMETERS };
 
 #define AXIS_FIELD(name, standard, doc) MCT_QUANTITY(name, "", -1e6, 1e6, standard, doc)
 #define GRAVITY_FIELD(name, standard, doc) \
@@ -32,6 +32,7 @@ static const mct_field parameters[PARAMETERS] = {
     [FRICTION] =
         MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.8, "viscous friction of the bearing"),
     [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the bearing"),
+    [STATIC_RATIO] = MCT_STATIC_RATIO,
 };
 
 static const mct_field columns[] = {
@@ -72,7 +73,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
         mct_message_add(why, "parameters.axis: found 0, 0, 0; allowed a direction: not all three 0");
         return MCT_ERROR_UNSUITED;
     }
-    mct_hinging hinging = {.friction = p[FRICTION], .coulomb = p[COULOMB]};
+    mct_hinging hinging = {.friction = p[FRICTION], .coulomb = p[COULOMB], .static_ratio = p[STATIC_RATIO]};
     double square = 0;
     for (int i = 0; i < 3; i++) {
         hinging.axis[i] = axis[i] / largest; /* so that no square is lost */

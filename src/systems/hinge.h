@@ -10,6 +10,7 @@
 #define MCT_SYSTEMS_HINGE_H
 
 #include "../effects/friction1.h"
+#include "../effects/friction_exact.h"
 #include "../steppers/euler.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
@@ -104,23 +105,40 @@ MCT_INLINE void mct_hinge_kick_symmetric(const void *constants, unsigned effects
     mct_hinge_kick(constants, effects, x, u, MCT_R(0.5), dx);
 }
 
-/* The rate's, without drag: w |w| has a kink where the body turns back. */
-MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int order, const mct_real *x,
-                                 mct_real u, mct_series *rates)
+/* The rate's in a mode of exact friction, which drag needs, too: w |w| has a kink where the body turns back. */
+MCT_INLINE void mct_hinge_phase(const void *constants, unsigned effects, int order, const mct_real *x,
+                                mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
 {
     const mct_hinge *k = constants;
     const mct_real h = k->step.h;
-    const mct_real turn = h * k->inverse_inertia;
+    mct_real turn = h * k->inverse_inertia;
+    mct_real torque = u;
+    mct_real drag = 0;
     mct_real *const w = rates[0];
     mct_series s = {0}, c = {0}; /* for compilers that do not see that the effects decide both times */
     if (effects & MCT_GRAVITY) {
         mct_sincos(x[0], &s[0], &c[0]);
     }
     w[0] = x[1];
+    if (effects & MCT_COULOMB_EXACT) {
+        const mct_real direction = mode->direction[0];
+        if (direction == 0) { /* the load of a body at rest is constant */
+            turn = 0;
+            loads[0][0] = mct_hinge_torque(k, effects & ~(unsigned)MCT_DRAG, s[0], c[0], w[0], u);
+            for (int n = 1; n < order; n++) {
+                loads[0][n] = 0;
+            }
+        }
+        torque -= direction * k->coulomb;
+        drag = direction * k->drag;
+    }
     MCT_UNROLL
     for (int n = 0; n < order; n++) {
         const mct_real share = turn * mct_series_share(n);
-        mct_real change = n == 0 ? turn * u : MCT_NOTHING;
+        mct_real change = n == 0 ? turn * torque : MCT_NOTHING;
+        if (effects & MCT_DRAG) {
+            change -= (share * drag) * mct_series_product(w, w, n);
+        }
         if (effects & MCT_VISCOUS) {
             change -= (share * k->viscous) * w[n];
         }
@@ -137,12 +155,23 @@ MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int or
     }
 }
 
+MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int order, const mct_real *x,
+                                 mct_real u, mct_series *rates)
+{
+    mct_hinge_phase(constants, effects, order, x, u, NULL, rates, NULL);
+}
+
 /* Of kernels.h. */
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const mct_hinge *k = constants;
-    mct_taylor(mct_hinge_series, constants, k->step.h, effects, order, 1, x, u, dx);
+    if (effects & MCT_COULOMB_EXACT) {
+        const mct_dry dry = {{k->hold}, 0, 0};
+        mct_friction_exact(mct_hinge_phase, constants, dry, k->step.h, effects, order, 1, x, u, dx);
+    } else {
+        mct_taylor(mct_hinge_series, constants, k->step.h, effects, order, 1, x, u, dx);
+    }
 }
 
 /* An angle whose sine and cosine are known: stages of a step lie near it. */
@@ -182,7 +211,7 @@ MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real
     const mct_hinge *k = constants;
     (void)effects;
     (void)u;
-    mct_friction1_correct(k->inertia, k->inverse_inertia, k->coulomb, k->step.h, x[1], dx);
+    mct_friction1_correct(k->inertia, k->inverse_inertia, k->coulomb, k->hold, k->step.h, x[1], dx);
 }
 
 /* All of an evaluation but the particles; potential energy is that of P and Q alone. s, c are of the angle. */
@@ -191,7 +220,7 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
 {
     *out = (mct_evaluation){0};
     const mct_real smooth = mct_hinge_torque(k, effects | MCT_ALWAYS, s, c, w, u);
-    const mct_real dry = mct_friction1_force(k->coulomb, w, smooth);
+    const mct_real dry = mct_friction1_force(k->coulomb, k->hold, w, smooth);
     out->M[0][0] = k->inertia;
     out->tau[0] = smooth + dry;
     out->acceleration[0] = k->inverse_inertia * out->tau[0];
@@ -202,29 +231,30 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
     out->power_coulomb = dry * w;
 }
 
-/* The kernels, and kernel() of the descriptor: MCT_HINGE_KERNELS(MCT_KERNELS_3, its three switches), weight and viscous
- * friction first. */
-#define MCT_HINGE_KERNELS(KERNELS, ...)                                                  \
-    KERNELS(seed, k->hinge.step.remainder, 1, __VA_ARGS__,                               \
-            mct_seed(mct_hinge_derivative, k, k->hinge.step, effects, 1, x, u, dx))      \
-    KERNELS(euler, k->hinge.step.remainder, 1, __VA_ARGS__,                              \
-            mct_euler(mct_hinge_kick_implicit, k, k->hinge.step, effects, 1, x, u, dx))  \
-    KERNELS(leap, k->hinge.step.remainder, 1, __VA_ARGS__,                               \
-            mct_leap(mct_hinge_kick_symmetric, k, k->hinge.step, effects, 1, x, u, dx))  \
-    KERNELS(rk4, k->hinge.step.sixth_remainder, 1, __VA_ARGS__,                          \
-            mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx)) \
-    MCT_TAYLOR_KERNELS_2(k->hinge.step.remainder, 1, 4, MCT_GRAVITY, MCT_VISCOUS)        \
-    MCT_SMOOTH_KERNELS_1(rkn6, k->hinge.step.remainder, 1, 4, MCT_GRAVITY,               \
-                         mct_hinge_rkn6(&k->hinge, effects, x, u, dx))                   \
-    static mct_kernel kernel(int stepper, uint32_t effects)                              \
-    {                                                                                    \
-        static const uint32_t switches[] = {__VA_ARGS__, 0};                             \
-        static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {                    \
-            [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,      \
-            [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,          \
-            [MCT_STEPPER_RKN6] = rkn6_kernels, MCT_TAYLOR_ROWS,                          \
-        };                                                                               \
-        return mct_switched_kernel_of(kernels, switches, stepper, effects);              \
+/* The kernels, and kernel() of the descriptor: by kernels.h's macros for any stepper and for series, and the first
+ * switches of those below that the system has. */
+#define MCT_HINGE_KERNELS(KERNELS, SERIES, ...)                                                 \
+    KERNELS(seed, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                   \
+            mct_seed(mct_hinge_derivative, k, k->hinge.step, effects, 1, x, u, dx))             \
+    KERNELS(euler, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                  \
+            mct_euler(mct_hinge_kick_implicit, k, k->hinge.step, effects, 1, x, u, dx))         \
+    KERNELS(leap, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                   \
+            mct_leap(mct_hinge_kick_symmetric, k, k->hinge.step, effects, 1, x, u, dx))         \
+    KERNELS(rk4, k->hinge.step.sixth_remainder, 1, 5, __VA_ARGS__,                              \
+            mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx))        \
+    SERIES(k->hinge.step.remainder, 1, MCT_GRAVITY, MCT_VISCOUS)                                \
+    MCT_SMOOTH_KERNELS_1(rkn6, k->hinge.step.remainder, 1, 5, MCT_GRAVITY,                      \
+                         mct_hinge_rkn6(&k->hinge, effects, x, u, dx))                          \
+    static mct_kernel kernel(int stepper, uint32_t effects)                                     \
+    {                                                                                           \
+        static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS,       MCT_COULOMB_MOREAU, \
+                                            MCT_DRAG,    MCT_COULOMB_EXACT, 0};                 \
+        static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {                           \
+            [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,             \
+            [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,                 \
+            [MCT_STEPPER_RKN6] = rkn6_kernels, MCT_TAYLOR_ROWS,                                 \
+        };                                                                                      \
+        return mct_switched_kernel_of(kernels, switches, stepper, effects);                     \
     }
 
 #endif

@@ -82,6 +82,7 @@ mct_status mct_hinged_particles_prepare(const mct_scene *scene, double h, const 
         .cosine_moment = (mct_real)dot(gravity, turned),
         .viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? hinging->friction : 0),
         .coulomb = (mct_real)((scene->effects & MCT_COULOMB) ? hinging->coulomb : 0),
+        .hold = (mct_real)((scene->effects & MCT_COULOMB) ? hinging->static_ratio * hinging->coulomb : 0),
     };
     return MCT_OK;
 }
@@ -132,7 +133,7 @@ void mct_hinged_particles_place(const void *constants, mct_hyperdual time, const
     }
 }
 
-MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
+MCT_HINGE_KERNELS(MCT_SMOOTH_KERNELS_3, MCT_TAYLOR_EXACT, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
 
 mct_kernel mct_hinged_particles_kernel(int stepper, uint32_t effects)
 {

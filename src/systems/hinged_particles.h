@@ -9,7 +9,7 @@
 #include "mctau/message.h"
 #include "mctau/scene.h"
 
-#define MCT_HINGED_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU)
+#define MCT_HINGED_EFFECTS (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB)
 
 /* Bodies with less inertia are refused: the lightest pendulum's [kg m^2], and a part of that about the origin. */
 #define MCT_LEAST_INERTIA       1e-14
@@ -21,6 +21,7 @@ typedef struct {
     double gravity[3]; /* [m/s^2] */
     double friction;   /* [N m s] */
     double coulomb;    /* [N m] */
+    double static_ratio;
 } mct_hinging;
 
 /* Constants of the scene's first list, rows of a mass and two or three coordinates at angle 0; the effects decide. */

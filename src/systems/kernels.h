@@ -11,36 +11,48 @@
 #include "../steppers/advance.h"
 #include "mctau/stepper.h"
 
-/* Of a system with a motor, by the low bits of its effects; those with both kinds of motor are empty. */
-#define MCT_MOTOR_KERNELS 32
+/* --- A system with a motor --- */
 
-#define MCT_STEPPER_KERNELS(stepper, remainder, expression)                                          \
-    MCT_INLINE void stepper##_increments(const void *constants, unsigned effects, const mct_real *x, \
-                                         mct_real u, mct_real *dx)                                   \
-    {                                                                                                \
-        const constants_t *k = constants;                                                            \
-        expression;                                                                                  \
-    }                                                                                                \
-    MCT_KERNELS_WITH_MOTOR(stepper, remainder, 0)                                                    \
-    MCT_KERNELS_WITH_MOTOR(stepper, remainder, 8)                                                    \
-    MCT_KERNELS_WITH_MOTOR(stepper, remainder, 16)                                                   \
-    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {                                 \
-        MCT_KERNEL_NAMES(stepper, 0), MCT_KERNEL_NAMES(stepper, 8), MCT_KERNEL_NAMES(stepper, 16)};
+#define MCT_MOTOR_KERNELS 72
+/* The place of an effect set in its tables: by weight and viscous friction, dry friction, drag and motor. */
+#define MCT_MOTOR_PLACE(effects)                                                             \
+    (((effects) & 3u) +                                                                      \
+     4u * (((effects) & MCT_COULOMB_MOREAU) ? 1u : ((effects) & MCT_COULOMB_EXACT) ? 2u : 0u) + \
+     12u * (((effects) & MCT_DRAG) ? 1u : 0u) + 3u * ((effects) & MCT_MOTOR))
 
-/* The eight sets of gravity, viscous and coulomb with one kind of motor: MCT_MOTOR's bits as a literal. */
-#define MCT_KERNELS_WITH_MOTOR(stepper, remainder, motor) \
-    MCT_KERNEL(stepper, remainder, motor, 0)              \
-    MCT_KERNEL(stepper, remainder, motor, 1)              \
-    MCT_KERNEL(stepper, remainder, motor, 2)              \
-    MCT_KERNEL(stepper, remainder, motor, 3)              \
-    MCT_KERNEL(stepper, remainder, motor, 4)              \
-    MCT_KERNEL(stepper, remainder, motor, 5)              \
-    MCT_KERNEL(stepper, remainder, motor, 6)              \
-    MCT_KERNEL(stepper, remainder, motor, 7)
+/* Sets of a stepper beside its motor, by their masks in digits, which names are made of: what is smooth; dry friction by
+ * Moreau; drag with it and without; exact dry friction with drag and without. */
+#define MCT_SMOOTH_SETS(each, ...) each(__VA_ARGS__, 0, 1, 2, 3)
+#define MCT_DRY_SETS(each, ...)    MCT_SMOOTH_SETS(each, __VA_ARGS__) each(__VA_ARGS__, 4, 5, 6, 7)
+#define MCT_ALL_SETS(each, ...)        \
+    MCT_DRY_SETS(each, __VA_ARGS__)    \
+    each(__VA_ARGS__, 64, 65, 66, 67)  \
+    each(__VA_ARGS__, 68, 69, 70, 71)
+#define MCT_SERIES_SETS(each, ...)                 \
+    MCT_SMOOTH_SETS(each, __VA_ARGS__)             \
+    each(__VA_ARGS__, 65536, 65537, 65538, 65539)  \
+    each(__VA_ARGS__, 65600, 65601, 65602, 65603)
 
-#define MCT_KERNEL_NAMES(stepper, motor)                                                        \
-    stepper##_##motor##_0, stepper##_##motor##_1, stepper##_##motor##_2, stepper##_##motor##_3, \
-        stepper##_##motor##_4, stepper##_##motor##_5, stepper##_##motor##_6, stepper##_##motor##_7
+/* Kernels of a stepper for these sets and each kind of motor, whose bit is a literal; the others are empty. */
+#define MCT_STEPPER_KERNELS(SETS, stepper, remainder, expression)       \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                          \
+    SETS(MCT_FOUR, stepper, remainder, 0)                               \
+    SETS(MCT_FOUR, stepper, remainder, 8)                               \
+    SETS(MCT_FOUR, stepper, remainder, 16)                              \
+    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {    \
+        SETS(MCT_FOUR_NAMES, stepper, 0) SETS(MCT_FOUR_NAMES, stepper, 8) SETS(MCT_FOUR_NAMES, stepper, 16)};
+
+#define MCT_FOUR(stepper, remainder, motor, a, b, c, d) \
+    MCT_KERNEL(stepper, remainder, motor, a)            \
+    MCT_KERNEL(stepper, remainder, motor, b)            \
+    MCT_KERNEL(stepper, remainder, motor, c)            \
+    MCT_KERNEL(stepper, remainder, motor, d)
+
+#define MCT_FOUR_NAMES(stepper, motor, a, b, c, d)                         \
+    MCT_KERNEL_NAME(stepper, motor, a), MCT_KERNEL_NAME(stepper, motor, b), \
+        MCT_KERNEL_NAME(stepper, motor, c), MCT_KERNEL_NAME(stepper, motor, d),
+#define MCT_KERNEL_NAME(stepper, motor, others) \
+    [MCT_MOTOR_PLACE((motor) + (others))] = stepper##_##motor##_##others
 
 #define MCT_KERNEL(stepper, remainder, motor, others)                                                   \
     static void stepper##_##motor##_##others(const void *constants, mct_state *state, mct_real u,       \
@@ -55,7 +67,8 @@
 static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int stepper, uint32_t effects)
 {
     const mct_kernel *row = kernels[stepper];
-    return row == NULL ? NULL : row[effects & (MCT_MOTOR_KERNELS - 1)];
+    const bool is_one = (effects & MCT_MOTOR) != MCT_MOTOR && (effects & MCT_COULOMB) != MCT_COULOMB;
+    return row == NULL || !is_one ? NULL : row[MCT_MOTOR_PLACE(effects)];
 }
 
 /* Bits of the mask of all kernels of a system without a motor, defined by the including file. */
@@ -163,24 +176,7 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
 
 /* --- Steppers that need a smooth motion: no kernels for effects with a kink; the others of a table stay NULL --- */
 
-/* Of a system with a motor, */
-#define MCT_SMOOTH_MOTOR_KERNELS(stepper, remainder, expression)                        \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                          \
-    MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, 0)                                \
-    MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, 8)                                \
-    MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, 16)                               \
-    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {                    \
-        MCT_SMOOTH_KERNEL_NAMES(stepper, 0), [8] = MCT_SMOOTH_KERNEL_NAMES(stepper, 8), \
-        [16] = MCT_SMOOTH_KERNEL_NAMES(stepper, 16)};
-#define MCT_SMOOTH_KERNELS_WITH_MOTOR(stepper, remainder, motor) \
-    MCT_KERNEL(stepper, remainder, motor, 0)                     \
-    MCT_KERNEL(stepper, remainder, motor, 1)                     \
-    MCT_KERNEL(stepper, remainder, motor, 2)                     \
-    MCT_KERNEL(stepper, remainder, motor, 3)
-#define MCT_SMOOTH_KERNEL_NAMES(stepper, motor) \
-    stepper##_##motor##_0, stepper##_##motor##_1, stepper##_##motor##_2, stepper##_##motor##_3
-
-/* or of `count` switches, of which the first, the first two or three suit. */
+/* Of `count` switches, of which the first, the first two, three or four suit. */
 #define MCT_SMOOTH_KERNELS_1(stepper, remainder, n, count, A, expression) \
     MCT_SWITCH_INCREMENTS(stepper, expression)                            \
     MCT_PAIR(stepper, remainder, n, s, 0, A)                              \
@@ -195,6 +191,44 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
     MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                                \
     static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_OCTET_NAMES(stepper, s)};
 
+#define MCT_SMOOTH_KERNELS_4(...) MCT_SMOOTH_KERNELS_4_OF(__VA_ARGS__)
+#define MCT_SMOOTH_KERNELS_4_OF(stepper, remainder, n, count, A, B, C, D, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                        \
+    MCT_OCTET(stepper, remainder, n, s0, 0, A, B, C)                                  \
+    MCT_OCTET(stepper, remainder, n, s1, D, A, B, C)                                  \
+    static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_OCTET_NAMES(stepper, s0), \
+                                                               MCT_OCTET_NAMES(stepper, s1)};
+
+/* Of three switches and dry friction, none, by Moreau and exact, which are the fourth and fifth. */
+#define MCT_DRY_KERNELS_3(...) MCT_DRY_KERNELS_3_OF(__VA_ARGS__)
+#define MCT_DRY_KERNELS_3_OF(stepper, remainder, n, A, B, C, expression)        \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                  \
+    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                             \
+    MCT_OCTET(stepper, remainder, n, m, MCT_COULOMB_MOREAU, A, B, C)            \
+    MCT_OCTET(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B, C)             \
+    static const mct_kernel stepper##_kernels[32] = {MCT_OCTET_NAMES(stepper, s), \
+                                                     MCT_OCTET_NAMES(stepper, m), \
+                                                     MCT_OCTET_NAMES(stepper, e)};
+
+/*
+ * Of a series that knows exact friction: two switches A and B, then dry friction by Moreau, drag and exact dry friction,
+ * of which drag suits with the last alone, and not every system.
+ */
+#define MCT_EXACT_KERNELS(stepper, remainder, n, A, B, expression)        \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                            \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                           \
+    MCT_QUAD(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B)           \
+    static const mct_kernel stepper##_kernels[32] = {MCT_QUAD_NAMES(stepper, s), \
+                                                     [16] = MCT_QUAD_NAMES(stepper, e)};
+#define MCT_EXACT_DRAG_KERNELS(stepper, remainder, n, A, B, expression)      \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                               \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                              \
+    MCT_QUAD(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B)              \
+    MCT_QUAD(stepper, remainder, n, d, MCT_COULOMB_EXACT | MCT_DRAG, A, B)   \
+    static const mct_kernel stepper##_kernels[32] = {MCT_QUAD_NAMES(stepper, s), \
+                                                     [16] = MCT_QUAD_NAMES(stepper, e), \
+                                                     [24] = MCT_QUAD_NAMES(stepper, d)};
+
 /* --- Taylor's method: the including file's step, taylor(constants, effects, order, x, u, dx), by literal orders --- */
 
 #define MCT_TAYLOR_OF_ORDER(KERNELS, order, ...) \
@@ -204,7 +238,10 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
     MCT_TAYLOR_OF_ORDER(KERNELS, 6, __VA_ARGS__) \
     MCT_TAYLOR_OF_ORDER(KERNELS, 8, __VA_ARGS__) \
     MCT_TAYLOR_OF_ORDER(KERNELS, 12, __VA_ARGS__)
-#define MCT_TAYLOR_MOTOR_KERNELS(remainder) MCT_TAYLOR(MCT_SMOOTH_MOTOR_KERNELS, remainder)
+#define MCT_TAYLOR_MOTOR_KERNELS(remainder) MCT_TAYLOR(MCT_SERIES_KERNELS, remainder)
+#define MCT_SERIES_KERNELS(...)             MCT_STEPPER_KERNELS(MCT_SERIES_SETS, __VA_ARGS__)
+#define MCT_TAYLOR_EXACT(...)               MCT_TAYLOR(MCT_EXACT_KERNELS, __VA_ARGS__)
+#define MCT_TAYLOR_EXACT_DRAG(...)          MCT_TAYLOR(MCT_EXACT_DRAG_KERNELS, __VA_ARGS__)
 #define MCT_TAYLOR_KERNELS_2(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_2, __VA_ARGS__)
 #define MCT_TAYLOR_KERNELS_3(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_3, __VA_ARGS__)
 

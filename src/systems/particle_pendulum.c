@@ -15,13 +15,14 @@
 #include "hinged_particles.h"
 #include "systems.h"
 
-enum { GRAVITY, FRICTION, COULOMB, PARAMETERS };
+enum { GRAVITY, FRICTION, COULOMB, STATIC_RATIO, PARAMETERS };
 
 static const mct_field parameters[PARAMETERS] = {
     [GRAVITY] = MCT_COEFFICIENT(MCT_GRAVITY, "gravity", "m/s^2", 0, 1e4, 9.81, "gravitational acceleration"),
     [FRICTION] =
         MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.0005, "viscous friction of the pivot"),
     [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [STATIC_RATIO] = MCT_STATIC_RATIO,
 };
 
 static const mct_field columns[] = {
@@ -55,7 +56,7 @@ static const mct_field torque_field = MCT_QUANTITY("torque", "N m", -1e9, 1e9, 0
 static mct_status prepare(const struct mct_scene *scene, double h, void *constants, struct mct_message *why)
 {
     const double *p = scene->parameters;
-    const mct_hinging hinging = {{0, 0, -1}, {0, -p[GRAVITY], 0}, p[FRICTION], p[COULOMB]};
+    const mct_hinging hinging = {{0, 0, -1}, {0, -p[GRAVITY], 0}, p[FRICTION], p[COULOMB], p[STATIC_RATIO]};
     return mct_hinged_particles_prepare(scene, h, &hinging, constants, why);
 }
 

@@ -19,7 +19,7 @@
 
 typedef mct_pendulum_constants constants_t;
 
-enum { MASS, LENGTH, GRAVITY, FRICTION, DRAG, COULOMB, PARAMETERS };
+enum { MASS, LENGTH, GRAVITY, FRICTION, DRAG, COULOMB, STATIC_RATIO, PARAMETERS };
 
 static const mct_field parameters[PARAMETERS] = {
     [MASS] = MCT_QUANTITY("mass", "kg", 1e-6, 1e6, 0.1, "point mass"),
@@ -30,6 +30,7 @@ static const mct_field parameters[PARAMETERS] = {
     [DRAG] = MCT_COEFFICIENT(MCT_DRAG, "drag", "N m s^2", 0, 1e6, 0,
                              "torque of the air by the square of the rate"),
     [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
+    [STATIC_RATIO] = MCT_STATIC_RATIO,
 };
 
 static const mct_coordinate coordinates[1] = {
@@ -56,6 +57,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
         .viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? p[FRICTION] : 0),
         .drag = (mct_real)((scene->effects & MCT_DRAG) ? p[DRAG] : 0),
         .coulomb = (mct_real)((scene->effects & MCT_COULOMB) ? p[COULOMB] : 0),
+        .hold = (mct_real)((scene->effects & MCT_COULOMB) ? p[STATIC_RATIO] * p[COULOMB] : 0),
     };
     k->mass = (mct_real)p[MASS];
     k->length = (mct_real)p[LENGTH];
@@ -92,7 +94,8 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[0][2] = mct_hyperdual_constant(0);
 }
 
-MCT_HINGE_KERNELS(MCT_KERNELS_4, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU, MCT_DRAG)
+MCT_HINGE_KERNELS(MCT_SMOOTH_KERNELS_4, MCT_TAYLOR_EXACT_DRAG, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU,
+                  MCT_DRAG)
 
 const mct_system mct_pendulum = {
     .name = "pendulum",
@@ -103,7 +106,7 @@ const mct_system mct_pendulum = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &torque_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_DRAG,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_DRAG,
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS,
     .particle_count = 1,
     .particle_names = particle_names,

@@ -21,6 +21,7 @@
 #include "mctau/reaction_wheel.h"
 
 #include "../effects/friction.h"
+#include "../effects/friction_exact.h"
 #include "../effects/motor.h"
 #include "../steppers/euler.h"
 #include "../steppers/expo.h"
@@ -47,6 +48,9 @@ enum {
     WHEEL_FRICTION,
     ARM_COULOMB,
     WHEEL_COULOMB,
+    STATIC_RATIO,
+    ARM_DRAG,
+    WHEEL_DRAG,
     TORQUE_CONSTANT,
     BACK_EMF_CONSTANT,
     RESISTANCE,
@@ -73,6 +77,11 @@ static const mct_field parameters[PARAMETERS] = {
         MCT_COEFFICIENT(MCT_COULOMB, "arm_coulomb", "N m", 0, 1e6, 0, "dry friction of the pivot"),
     [WHEEL_COULOMB] =
         MCT_COEFFICIENT(MCT_COULOMB, "wheel_coulomb", "N m", 0, 1e6, 0, "dry friction of the wheel's axle"),
+    [STATIC_RATIO] = MCT_STATIC_RATIO,
+    [ARM_DRAG] = MCT_COEFFICIENT(MCT_DRAG, "arm_drag", "N m s^2", 0, 1e6, 0,
+                                 "torque of the air on the arm by the square of its rate"),
+    [WHEEL_DRAG] = MCT_COEFFICIENT(MCT_DRAG, "wheel_drag", "N m s^2", 0, 1e6, 0,
+                                   "torque between wheel and arm by the square of the wheel's rate"),
     [TORQUE_CONSTANT] =
         MCT_COEFFICIENT(MCT_MOTOR, "torque_constant", "N m/A", 0, 1e4, 0.0274, "motor torque per current"),
     [BACK_EMF_CONSTANT] =
@@ -187,6 +196,10 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->wheel_viscous = (mct_real)(viscous ? p[WHEEL_FRICTION] : 0);
     k->coulomb[0] = (mct_real)(coulomb ? p[ARM_COULOMB] : 0);
     k->coulomb[1] = (mct_real)(coulomb ? p[WHEEL_COULOMB] : 0);
+    k->hold[0] = (mct_real)(coulomb ? p[STATIC_RATIO] * p[ARM_COULOMB] : 0);
+    k->hold[1] = (mct_real)(coulomb ? p[STATIC_RATIO] * p[WHEEL_COULOMB] : 0);
+    k->drag[0] = (mct_real)(effects & MCT_DRAG ? p[ARM_DRAG] : 0);
+    k->drag[1] = (mct_real)(effects & MCT_DRAG ? p[WHEEL_DRAG] : 0);
     k->inverse_arm = (mct_real)(1 / J);
     k->inverse_wheel = (mct_real)(1 / I_w);
 
@@ -239,7 +252,13 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return status;
 }
 
-/* tau at the sine of the arm's angle, and rates. */
+/* Drag by the square as a damping, which grows with the rate. */
+MCT_INLINE mct_real drag_of(const constants_t *k, int i, mct_real rate)
+{
+    return k->drag[i] * (rate < 0 ? -rate : rate);
+}
+
+/* tau at the sine of the arm's angle, and rates; without drag, which is not linear. */
 MCT_INLINE void torques(const constants_t *k, unsigned effects, mct_real s, const mct_real *v, mct_real drive,
                         mct_real *tau)
 {
@@ -261,6 +280,10 @@ MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct
     const mct_real current = (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : 0;
     mct_real tau[2];
     torques(k, effects, s, x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
+    if (effects & MCT_DRAG) {
+        tau[0] -= drag_of(k, 0, x[2]) * x[2];
+        tau[1] -= drag_of(k, 1, x[3]) * x[3];
+    }
     dx[0] = x[2];
     dx[1] = x[3];
     dx[2] = (tau[0] - tau[1]) * k->inverse_arm;
@@ -278,10 +301,25 @@ MCT_INLINE void derivative(const void *constants, unsigned effects, const mct_re
     derivative_at(constants, effects, x, s, c, u, dx);
 }
 
-MCT_INLINE void impulse(mct_symmetric2 inverse, mct_real h, const mct_real *tau, mct_real *dv)
+/* Rate increments of tau over a step. `inverse` holds what is linear; drag is bilinear in the old rate and the new one. */
+MCT_INLINE void impulse(const constants_t *k, unsigned effects, mct_symmetric2 inverse, const mct_real *v,
+                        mct_real *tau, mct_real *dv)
 {
-    dv[0] = h * (inverse.a11 * tau[0] + inverse.a12 * tau[1]);
-    dv[1] = h * (inverse.a12 * tau[0] + inverse.a22 * tau[1]);
+    const mct_real h = k->step.h;
+    if (!(effects & MCT_DRAG)) {
+        dv[0] = h * (inverse.a11 * tau[0] + inverse.a12 * tau[1]);
+        dv[1] = h * (inverse.a12 * tau[0] + inverse.a22 * tau[1]);
+        return;
+    }
+    /* (1 + inverse E) dv = inverse (h tau - E v), E = h drag |v| */
+    const mct_real e1 = h * drag_of(k, 0, v[0]);
+    const mct_real e2 = h * drag_of(k, 1, v[1]);
+    const mct_real p1 = h * tau[0] - e1 * v[0];
+    const mct_real p2 = h * tau[1] - e2 * v[1];
+    const mct_real det = inverse.a11 * inverse.a22 - inverse.a12 * inverse.a12;
+    const mct_real scale = 1 / (1 + inverse.a11 * e1 + inverse.a22 * e2 + det * e1 * e2);
+    dv[0] = scale * (inverse.a11 * p1 + inverse.a12 * p2 + det * e2 * p1);
+    dv[1] = scale * (inverse.a12 * p1 + inverse.a22 * p2 + det * e1 * p2);
 }
 
 /* Kick of `euler`: damping and current implicit. */
@@ -298,7 +336,7 @@ MCT_INLINE void kick_implicit(const void *constants, unsigned effects, const mct
     mct_sincos(x[0], &s, &c);
     mct_real tau[2];
     torques(k, effects, s, x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
-    impulse(k->implicit, k->step.h, tau, dx + 2);
+    impulse(k, effects, k->implicit, x + 2, tau, dx + 2);
 }
 
 /* Kick of `leap`: damping at the mean of old and new velocity, current averaged exactly. */
@@ -314,19 +352,21 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
     mct_sincos(x[0], &s, &c);
     mct_real tau[2];
     torques(k, effects, s, x + 2, mct_motor_force(&k->motor, effects, u, current), tau);
-    impulse(k->symmetric, k->step.h, tau, dx + 2);
+    impulse(k, effects, k->symmetric, x + 2, tau, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_change(&k->motor, u, x[3], x[4], dx[3]);
     }
 }
 
-MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_series *rates)
+/* In a mode of exact friction, what is at rest has an unlimited inertia; its load is what its own equation leaves. */
+MCT_INLINE void phase_series(const void *constants, unsigned effects, int order, const mct_real *x,
+                             mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
     mct_real *const arm = rates[0], *const wheel = rates[1], *const current = rates[2];
     mct_series s = {0}, c = {0}; /* for compilers that do not see that the effects decide both times */
+    mct_series on_arm, on_wheel; /* torques */
     if (effects & MCT_GRAVITY) {
         mct_sincos(x[0], &s[0], &c[0]);
     }
@@ -334,6 +374,21 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
     wheel[0] = x[3];
     if (effects & MCT_MOTOR_INDUCTIVE) {
         current[0] = x[4];
+    }
+    mct_symmetric2 inverse = k->inertia.inverse;
+    mct_real against[2] = {0, 0}; /* dynamic friction */
+    mct_real drag[2] = {0, 0};
+    if (effects & MCT_COULOMB_EXACT) {
+        const bool is_held[2] = {mode->direction[0] == 0, mode->direction[1] == 0};
+        if (is_held[0] || is_held[1]) {
+            inverse.a12 = 0;
+            inverse.a11 = is_held[0] ? 0 : 1 / k->inertia.mass.a11;
+            inverse.a22 = is_held[1] ? 0 : k->inverse_wheel;
+        }
+        for (int i = 0; i < 2; i++) {
+            against[i] = mode->direction[i] * k->coulomb[i];
+            drag[i] = mode->direction[i] * k->drag[i];
+        }
     }
     MCT_UNROLL
     for (int n = 0; n < order; n++) {
@@ -347,23 +402,56 @@ MCT_INLINE void series(const void *constants, unsigned effects, int order, const
         }
         mct_real tau[2];
         torques(k, effects, (effects & MCT_GRAVITY) ? s[n] : 0, v, drive, tau);
-        const mct_real change = (share * k->inverse_arm) * (tau[0] - tau[1]);
+        if ((effects & MCT_COULOMB_EXACT) && n == 0) {
+            tau[0] -= against[0];
+            tau[1] -= against[1];
+        }
+        if (effects & MCT_DRAG) {
+            tau[0] -= drag[0] * mct_series_product(arm, arm, n);
+            tau[1] -= drag[1] * mct_series_product(wheel, wheel, n);
+        }
+        on_arm[n] = tau[0];
+        on_wheel[n] = tau[1];
+        if (effects & MCT_COULOMB_EXACT) {
+            arm[n + 1] = (share * inverse.a11) * tau[0] + (share * inverse.a12) * tau[1];
+            wheel[n + 1] = (share * inverse.a12) * tau[0] + (share * inverse.a22) * tau[1];
+        } else {
+            arm[n + 1] = (share * k->inverse_arm) * (tau[0] - tau[1]);
+            wheel[n + 1] = (share * k->inverse_wheel) * tau[1] - arm[n + 1];
+        }
         if (effects & MCT_GRAVITY) {
             mct_series_sincos(arm, h, n, s, c);
         }
-        arm[n + 1] = change;
-        wheel[n + 1] = (share * k->inverse_wheel) * tau[1] - change;
         if (effects & MCT_MOTOR_INDUCTIVE) {
             current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[1], now);
         }
     }
+    if ((effects & MCT_COULOMB_EXACT) && (mode->direction[0] == 0 || mode->direction[1] == 0)) {
+        const mct_real coupling = k->inertia.mass.a12 / h;
+        for (int n = 0; n < order; n++) {
+            const mct_real rate = (mct_real)(n + 1) * coupling;
+            loads[0][n] = on_arm[n] - rate * wheel[n + 1];
+            loads[1][n] = on_wheel[n] - rate * arm[n + 1];
+        }
+    }
+}
+
+MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       mct_series *rates)
+{
+    phase_series(constants, effects, order, x, u, NULL, rates, NULL);
 }
 
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const constants_t *k = constants;
-    mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
+    if (effects & MCT_COULOMB_EXACT) {
+        const mct_dry dry = {{k->hold[0], k->hold[1]}, 0, 0};
+        mct_friction_exact(phase_series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
+    } else {
+        mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
+    }
 }
 
 static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
@@ -379,7 +467,7 @@ static inline void friction(const void *constants, unsigned effects, const mct_r
     (void)effects;
     (void)u;
     const constants_t *k = constants;
-    mct_friction_correct(k->inertia, k->coulomb, k->step.h, x + 2, dx);
+    mct_friction_correct(k->inertia, k->coulomb, k->hold, k->step.h, x + 2, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -402,10 +490,12 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
             (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : mct_motor_quasi_static_current(&k->motor, u, wheel_rate);
         drive = k->motor.force_per_ampere * out->current;
     }
-    const mct_real smooth[2] = {k->weight_moment * s - k->arm_viscous * arm_rate,
-                                drive - k->wheel_viscous * wheel_rate};
+    const mct_real arm_damping = k->arm_viscous + drag_of(k, 0, arm_rate);
+    const mct_real wheel_damping = k->wheel_viscous + drag_of(k, 1, wheel_rate);
+    const mct_real smooth[2] = {k->weight_moment * s - arm_damping * arm_rate,
+                                drive - wheel_damping * wheel_rate};
     mct_real dry[2];
-    mct_friction_force(k->inertia, k->coulomb, x + 2, smooth, dry);
+    mct_friction_force(k->inertia, k->coulomb, k->hold, x + 2, smooth, dry);
     out->tau[0] = smooth[0] + dry[0];
     out->tau[1] = smooth[1] + dry[1];
     out->acceleration[0] = (out->tau[0] - out->tau[1]) * k->inverse_arm;
@@ -434,7 +524,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy =
         MCT_R(0.5) * (k->arm_inertia * arm_rate * arm_rate + k->wheel_inertia * rim_rate * rim_rate);
     out->potential_energy = k->weight_moment * c;
-    out->power_viscous = -(k->arm_viscous * arm_rate * arm_rate + k->wheel_viscous * wheel_rate * wheel_rate);
+    out->power_viscous = -(arm_damping * arm_rate * arm_rate + wheel_damping * wheel_rate * wheel_rate);
     out->power_coulomb = dry[0] * arm_rate + dry[1] * wheel_rate;
     mct_motor_powers(&k->motor, effects, u, wheel_rate, out);
 }
@@ -444,8 +534,9 @@ static void accelerate(const void *constants, uint32_t effects, const mct_real *
     const constants_t *k = constants;
     mct_real s, c;
     mct_sincos(x[0], &s, &c);
-    const mct_real tau2 = mct_motor_observed_force(&k->motor, effects, u, x[3]) - k->wheel_viscous * x[3];
-    const mct_real tau1 = k->weight_moment * s - k->arm_viscous * x[2];
+    const mct_real tau2 = mct_motor_observed_force(&k->motor, effects, u, x[3]) -
+                          (k->wheel_viscous + drag_of(k, 1, x[3])) * x[3];
+    const mct_real tau1 = k->weight_moment * s - (k->arm_viscous + drag_of(k, 0, x[2])) * x[2];
     a[0] = (tau1 - tau2) * k->inverse_arm;
     a[1] = tau2 * k->inverse_wheel - a[0];
 }
@@ -488,14 +579,18 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
     model->A[3 * 4 + 0] += e[3];
 }
 
-MCT_STEPPER_KERNELS(seed, k->step.remainder, mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(euler, k->step.remainder, mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(leap, k->step.remainder, mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
-MCT_STEPPER_KERNELS(rk4, k->step.sixth_remainder, mct_rk4(derivative_at, 0, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, seed, k->step.remainder,
+                    mct_seed(derivative, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, euler, k->step.remainder,
+                    mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, leap, k->step.remainder,
+                    mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, rk4, k->step.sixth_remainder,
+                    mct_rk4(derivative_at, 0, k, k->step, effects, 2, x, u, dx))
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
-MCT_STEPPER_KERNELS(expo, 0, mct_expo_increments(&k->expo, 2, 1, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(MCT_DRY_SETS, expo, 0, mct_expo_increments(&k->expo, 2, 1, effects, 2, x, u, dx))
 
-MCT_SMOOTH_MOTOR_KERNELS(expo8, 0, mct_expo_increments(&k->expo, 4, 3, effects, 2, x, u, dx))
+MCT_STEPPER_KERNELS(MCT_SMOOTH_SETS, expo8, 0, mct_expo_increments(&k->expo, 4, 3, effects, 2, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
@@ -532,7 +627,7 @@ const mct_system mct_reaction_wheel = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &torque_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU | MCT_MOTOR | MCT_SATURATION,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_DRAG | MCT_MOTOR | MCT_SATURATION,
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS | MCT_MOTOR_INDUCTIVE | MCT_SATURATION_VOLTAGE,
     .particle_count = 4,
     .particle_names = particle_names,

@@ -27,7 +27,7 @@
 
 typedef mct_solid_pendulum_constants constants_t;
 
-enum { SIZE_1, SIZE_2, SIZE_3, DENSITY, PIVOT_OFFSET, GRAVITY, FRICTION, COULOMB, PARAMETERS };
+enum { SIZE_1, SIZE_2, SIZE_3, DENSITY, PIVOT_OFFSET, GRAVITY, FRICTION, COULOMB, STATIC_RATIO, PARAMETERS };
 
 static const mct_field parameters[PARAMETERS] = {
     [SIZE_1] = MCT_QUANTITY("size_1", "m", 1e-4, 1e3, 1, "length, from end to end"),
@@ -40,6 +40,7 @@ static const mct_field parameters[PARAMETERS] = {
     [FRICTION] =
         MCT_COEFFICIENT(MCT_VISCOUS, "friction", "N m s", 0, 1e6, 0.2, "viscous friction of the axle"),
     [COULOMB] = MCT_COEFFICIENT(MCT_COULOMB, "coulomb", "N m", 0, 1e6, 0, "dry friction of the axle"),
+    [STATIC_RATIO] = MCT_STATIC_RATIO,
 };
 
 static const mct_coordinate coordinates[1] = {
@@ -78,6 +79,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
         .cosine_moment = (mct_real)(-mass * gravity * d),
         .viscous = (mct_real)((scene->effects & MCT_VISCOUS) ? p[FRICTION] : 0),
         .coulomb = (mct_real)((scene->effects & MCT_COULOMB) ? p[COULOMB] : 0),
+        .hold = (mct_real)((scene->effects & MCT_COULOMB) ? p[STATIC_RATIO] * p[COULOMB] : 0),
     };
     k->mass = (mct_real)mass;
     k->gravity = (mct_real)gravity;
@@ -126,7 +128,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     }
 }
 
-MCT_HINGE_KERNELS(MCT_KERNELS_3, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
+MCT_HINGE_KERNELS(MCT_SMOOTH_KERNELS_3, MCT_TAYLOR_EXACT, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
 
 const mct_system mct_solid_pendulum = {
     .name = "solid_pendulum",
@@ -137,7 +139,7 @@ const mct_system mct_solid_pendulum = {
     .parameter_count = PARAMETERS,
     .parameters = parameters,
     .input_without_motor = &torque_field,
-    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU,
+    .effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB,
     .standard_effects = MCT_GRAVITY | MCT_VISCOUS,
     .particle_count = PARTICLES,
     .particle_names = particle_names,

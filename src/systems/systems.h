@@ -7,6 +7,11 @@
 /* "particle_1" and on, MCT_MAX_PARTICLES of them: of a system that lists its particles. */
 extern const char *const mct_particle_numbers[MCT_MAX_PARTICLES];
 
+/* A parameter of those that give dry friction as forces. */
+#define MCT_STATIC_RATIO                                       \
+    MCT_COEFFICIENT(MCT_COULOMB, "static_ratio", "", 1, 10, 1, \
+                    "static over dynamic friction, of what is at rest")
+
 extern const mct_system mct_cart_pole;
 extern const mct_system mct_reaction_wheel;
 extern const mct_system mct_pendulum;

@@ -109,7 +109,7 @@ static void test_without_bounds_there_is_no_impulse_and_with_large_ones_all_come
         TEST_ASSERT_TRUE(now.p[0] == 0 && now.p[1] == 0);
         const mct_real large[2] = {MCT_R(1e9), MCT_R(1e9)};
         mct_real dx[4] = {MCT_R(0.5), MCT_R(0.25), MCT_R(0.125), MCT_R(-0.125)};
-        mct_friction_correct(now.inertia, large, MCT_R(0.001), now.v, dx);
+        mct_friction_correct(now.inertia, large, large, MCT_R(0.001), now.v, dx);
         for (int i = 0; i < 2; i++) {
             TEST_ASSERT_TRUE(dx[2 + i] == -now.v[i]); /* exactly */
         }

@@ -19,7 +19,25 @@
 #endif
 
 /* Parameters in the order of the systems' tables. */
-enum { M1, M2, LENGTH, K1, K2, CART_DRY, POLE_DRY, G, KT, KB, R, L, GEAR, PULLEY };
+enum {
+    M1,
+    M2,
+    LENGTH,
+    K1,
+    K2,
+    CART_DRY,
+    POLE_DRY,
+    STATIC,
+    CART_AIR,
+    POLE_AIR,
+    G,
+    KT,
+    KB,
+    R,
+    L,
+    GEAR,
+    PULLEY
+};
 enum {
     WHEEL_M,
     WHEEL_I,
@@ -31,6 +49,9 @@ enum {
     NU2,
     DRY1,
     DRY2,
+    WHEEL_STATIC,
+    AIR1,
+    AIR2,
     WHEEL_KT,
     WHEEL_KB,
     WHEEL_R,
@@ -86,6 +107,7 @@ void reference_rate(const reference_model *model, const quad *x, quad u, quad *d
     const quad *p = model->p;
     const bool gravity = model->effects & MCT_GRAVITY;
     const bool viscous = model->effects & MCT_VISCOUS;
+    const bool drag = model->effects & MCT_DRAG;
     quad di;
     quad M[2][2];
     quad f[2];
@@ -100,6 +122,8 @@ void reference_rate(const reference_model *model, const quad *x, quad u, quad *d
         f[1] = gravity ? p[M2] * p[G] * p[LENGTH] * s : 0;
         f[0] -= viscous ? p[K1] * x[2] : 0;
         f[1] -= viscous ? p[K2] * x[3] : 0;
+        f[0] -= drag ? p[CART_AIR] * size_of(x[2]) * x[2] : 0;
+        f[1] -= drag ? p[POLE_AIR] * size_of(x[3]) * x[3] : 0;
     } else {
         M[0][0] = p[WHEEL_M] * p[ARM_L] * p[ARM_L] + p[WHEEL_I] + p[ARM_I];
         M[0][1] = M[1][0] = M[1][1] = p[WHEEL_I];
@@ -107,6 +131,8 @@ void reference_rate(const reference_model *model, const quad *x, quad u, quad *d
         f[1] = drive(model, 1, WHEEL_KT, x[4], x[3], u, &di);
         f[0] -= viscous ? p[NU1] * x[2] : 0;
         f[1] -= viscous ? p[NU2] * x[3] : 0;
+        f[0] -= drag ? p[AIR1] * size_of(x[2]) * x[2] : 0;
+        f[1] -= drag ? p[AIR2] * size_of(x[3]) * x[3] : 0;
     }
     dx[0] = x[2];
     dx[1] = x[3];

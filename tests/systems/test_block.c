@@ -216,7 +216,8 @@ static void test_a_block_on_a_belt_is_carried_at_the_speed_of_the_belt(void)
 
 static void refused(const char *parameter, double value, const char *sentence)
 {
-    mct_scene scene = scene_with(MCT_STEPPER_EXPO, mct_systems[block()]->effects);
+    mct_scene scene =
+        scene_with(MCT_STEPPER_EXPO, mct_systems[block()]->effects & ~(uint32_t)MCT_COULOMB_MOREAU);
     *parameter_of(&scene, parameter) = value;
     *parameter_of(&scene, "force_amplitude") = 1;
     mct_plant plant;
