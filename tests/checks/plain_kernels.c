@@ -1,9 +1,9 @@
 /*
  * Kernels as one would write them for a mechanism that has some effects and never any others. Written from the
  * equations, with no mask anywhere. test_kernels.py holds the library's kernels for the same effects against them:
- * plain_cart_pole_rk4_13 is rk4 with an inductive motor (0x10), gravity and viscous friction (0x3). All effects that go
- * together but one, for each: 7 without a motor, 13 without dry friction, 15 without viscous friction, 16 without gravity,
- * and f with a motor without inductance.
+ * plain_cart_pole_rk4_13 is rk4 with an inductive motor (0x10), gravity and viscous friction (0x3). All effects but one,
+ * for each: 17 without drag, 47 without a motor, 53 without dry friction, 55 without viscous friction, 56 without gravity,
+ * and 4f with a motor without inductance; and the same without drag, which expo has not.
  * Only what every kernel has is shared: constants, sine and cosine, compensated sums, and the clamp of dry friction.
  *
  * The program runs both from the same start, for measure.h, and fails where they do not move alike.
@@ -30,18 +30,31 @@
     KERNEL(cart_pole, rk4, RK4, f)         \
     KERNEL(cart_pole, rk4, RK4, 15)        \
     KERNEL(cart_pole, rk4, RK4, 16)        \
+    KERNEL(cart_pole, rk4, RK4, 17)        \
+    KERNEL(cart_pole, rk4, RK4, 47)        \
+    KERNEL(cart_pole, rk4, RK4, 4f)        \
+    KERNEL(cart_pole, rk4, RK4, 53)        \
+    KERNEL(cart_pole, rk4, RK4, 55)        \
+    KERNEL(cart_pole, rk4, RK4, 56)        \
     KERNEL(cart_pole, leap, LEAP, 0)       \
     KERNEL(reaction_wheel, rk4, RK4, 7)    \
     KERNEL(reaction_wheel, rk4, RK4, f)    \
     KERNEL(reaction_wheel, rk4, RK4, 13)   \
     KERNEL(reaction_wheel, rk4, RK4, 15)   \
     KERNEL(reaction_wheel, rk4, RK4, 16)   \
+    KERNEL(reaction_wheel, rk4, RK4, 17)   \
+    KERNEL(reaction_wheel, rk4, RK4, 47)   \
+    KERNEL(reaction_wheel, rk4, RK4, 4f)   \
+    KERNEL(reaction_wheel, rk4, RK4, 53)   \
+    KERNEL(reaction_wheel, rk4, RK4, 55)   \
+    KERNEL(reaction_wheel, rk4, RK4, 56)   \
     KERNEL(reaction_wheel, expo, EXPO, 0)  \
     KERNEL(reaction_wheel, expo, EXPO, 7)  \
     KERNEL(reaction_wheel, expo, EXPO, f)  \
     KERNEL(reaction_wheel, expo, EXPO, 13) \
     KERNEL(reaction_wheel, expo, EXPO, 15) \
-    KERNEL(reaction_wheel, expo, EXPO, 16)
+    KERNEL(reaction_wheel, expo, EXPO, 16) \
+    KERNEL(reaction_wheel, expo, EXPO, 17)
 
 #define KERNEL(system, name, STEPPER, effects)                                                    \
     void plain_##system##_##name##_##effects(const void *constants, mct_state *state, mct_real u, \
@@ -186,13 +199,61 @@ MCT_INLINE void driven_level(const mct_cart_pole_constants *k, const mct_real *x
     current_rate(k, x, voltage, dx);
 }
 
-/* The increments of one step. */
+MCT_INLINE mct_real drag(mct_real coefficient, mct_real rate)
+{
+    return coefficient * (rate < 0 ? -rate : rate) * rate;
+}
+
+/* The same with drag, c v |v| against each rate. */
+MCT_INLINE void dragged(const mct_cart_pole_constants *k, const mct_real *x, mct_real s, mct_real c,
+                        mct_real force, mct_real *dx)
+{
+    accelerated(k, x, s, c,
+                force + k->moment * s * x[3] * x[3] - k->cart_viscous * x[2] - drag(k->drag[0], x[2]),
+                k->weight_moment * s - k->pole_viscous * x[3] - drag(k->drag[1], x[3]), dx);
+}
+
+MCT_INLINE void dragged_driven(const mct_cart_pole_constants *k, const mct_real *x, mct_real s, mct_real c,
+                               mct_real voltage, mct_real *dx)
+{
+    dragged(k, x, s, c, k->motor.force_per_ampere * x[4], dx);
+    current_rate(k, x, voltage, dx);
+}
+
+MCT_INLINE void dragged_at_once(const mct_cart_pole_constants *k, const mct_real *x, mct_real s, mct_real c,
+                                mct_real voltage, mct_real *dx)
+{
+    accelerated(k, x, s, c,
+                k->motor.force_per_volt * voltage + k->moment * s * x[3] * x[3] - k->cart_damping * x[2] -
+                    drag(k->drag[0], x[2]),
+                k->weight_moment * s - k->pole_viscous * x[3] - drag(k->drag[1], x[3]), dx);
+}
+
+MCT_INLINE void dragged_alone(const mct_cart_pole_constants *k, const mct_real *x, mct_real s, mct_real c,
+                              mct_real voltage, mct_real *dx)
+{
+    accelerated(k, x, s, c,
+                k->motor.force_per_ampere * x[4] + k->moment * s * x[3] * x[3] - drag(k->drag[0], x[2]),
+                k->weight_moment * s - drag(k->drag[1], x[3]), dx);
+    current_rate(k, x, voltage, dx);
+}
+
+MCT_INLINE void dragged_level(const mct_cart_pole_constants *k, const mct_real *x, mct_real s, mct_real c,
+                              mct_real voltage, mct_real *dx)
+{
+    accelerated(k, x, s, c,
+                k->motor.force_per_ampere * x[4] + k->moment * s * x[3] * x[3] - k->cart_viscous * x[2] -
+                    drag(k->drag[0], x[2]),
+                -(k->pole_viscous * x[3]) - drag(k->drag[1], x[3]), dx);
+    current_rate(k, x, voltage, dx);
+}
+
+/* The increments of one step, from a state whose sine and cosine these are. */
 MCT_INLINE void rk4_step(cart_pole_rates rates, int states, const mct_cart_pole_constants *k,
-                         const mct_real *x, mct_real input, mct_real *dx)
+                         const mct_real *x, mct_real s0, mct_real c0, mct_real input, mct_real *dx)
 {
     const mct_step step = k->step;
-    mct_real k1[5], k2[5], k3[5], k4[5], stage[5], s0, c0, sine, cosine;
-    mct_sincos(x[1], &s0, &c0);
+    mct_real k1[5], k2[5], k3[5], k4[5], stage[5], sine, cosine;
     rates(k, x, s0, c0, input, k1);
     MCT_UNROLL
     for (int i = 0; i < states; i++) {
@@ -224,21 +285,25 @@ MCT_INLINE void rk4(cart_pole_rates rates, int states, const mct_cart_pole_const
     mct_real x[5], c[5], dx[5];
     load(states, state, x, c);
     for (int32_t n = 0; n < steps; n++) {
-        rk4_step(rates, states, k, x, input, dx);
+        mct_real s, cosine;
+        mct_sincos(x[1], &s, &cosine);
+        rk4_step(rates, states, k, x, s, cosine, input, dx);
         add(states, k->step.sixth_remainder, dx, x, c);
     }
     store(states, x, c, state);
 }
 
 /* With dry friction: the impulse that it has at the middle of the step, by M there. */
-static void cart_pole_friction(const mct_cart_pole_constants *k, const mct_real *x, mct_real *dx)
+MCT_INLINE void cart_pole_friction(const mct_cart_pole_constants *k, const mct_real *x, mct_real s0,
+                                   mct_real c0, mct_real *dx)
 {
     mct_real s, c;
-    mct_sincos(x[1] + MCT_R(0.5) * dx[1], &s, &c);
+    const mct_real middle = x[1] + MCT_R(0.5) * dx[1];
+    mct_sincos_near(middle, middle - x[1], s0, c0, &s, &c);
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     const mct_inertia2 inertia = {{k->total_mass, k->moment * c, k->inertia},
                                   {inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia}};
-    mct_friction_correct(inertia, k->coulomb, k->step.h, x + 2, dx);
+    mct_friction_correct(inertia, k->coulomb, k->hold, k->step.h, x + 2, dx);
 }
 
 MCT_INLINE void rk4_dry(cart_pole_rates rates, int states, const mct_cart_pole_constants *k, mct_state *state,
@@ -247,8 +312,10 @@ MCT_INLINE void rk4_dry(cart_pole_rates rates, int states, const mct_cart_pole_c
     mct_real x[5], c[5], dx[5];
     load(states, state, x, c);
     for (int32_t n = 0; n < steps; n++) {
-        rk4_step(rates, states, k, x, input, dx);
-        cart_pole_friction(k, x, dx);
+        mct_real s, cosine;
+        mct_sincos(x[1], &s, &cosine);
+        rk4_step(rates, states, k, x, s, cosine, input, dx);
+        cart_pole_friction(k, x, s, cosine, dx);
         add_resting(states, k->step.sixth_remainder, dx, x, c);
     }
     store(states, x, c, state);
@@ -266,6 +333,12 @@ CART_POLE(7, 4, rk4_dry, damped)
 CART_POLE(f, 4, rk4_dry, driven_at_once)
 CART_POLE(15, 5, rk4_dry, driven_smoothly)
 CART_POLE(16, 5, rk4_dry, driven_level)
+CART_POLE(17, 5, rk4_dry, driven)
+CART_POLE(47, 4, rk4_dry, dragged)
+CART_POLE(4f, 4, rk4_dry, dragged_at_once)
+CART_POLE(53, 5, rk4, dragged_driven)
+CART_POLE(55, 5, rk4_dry, dragged_alone)
+CART_POLE(56, 5, rk4_dry, dragged_level)
 
 /* At the middle: [m1 + m2, m2 l cos - h m2 l sin thd; m2 l cos, m2 l^2] dv = h (f + m2 l sin thd^2, 0) */
 void plain_cart_pole_leap_0(const void *constants, mct_state *state, mct_real force, int32_t steps)
@@ -368,6 +441,45 @@ MCT_INLINE void wheel_driven_level(const mct_reaction_wheel_constants *k, const 
     wheel_current_rate(k, x, voltage, dx);
 }
 
+/* The same with drag, c v |v| against each rate. */
+MCT_INLINE void wheel_dragged(const mct_reaction_wheel_constants *k, const mct_real *x, mct_real s,
+                              mct_real torque, mct_real *dx)
+{
+    turned(k, x, k->weight_moment * s - k->arm_viscous * x[2] - drag(k->drag[0], x[2]),
+           torque - k->wheel_viscous * x[3] - drag(k->drag[1], x[3]), dx);
+}
+
+MCT_INLINE void wheel_dragged_driven(const mct_reaction_wheel_constants *k, const mct_real *x, mct_real s,
+                                     mct_real voltage, mct_real *dx)
+{
+    wheel_dragged(k, x, s, k->motor.force_per_ampere * x[4], dx);
+    wheel_current_rate(k, x, voltage, dx);
+}
+
+MCT_INLINE void wheel_dragged_at_once(const mct_reaction_wheel_constants *k, const mct_real *x, mct_real s,
+                                      mct_real voltage, mct_real *dx)
+{
+    turned(k, x, k->weight_moment * s - k->arm_viscous * x[2] - drag(k->drag[0], x[2]),
+           k->motor.force_per_volt * voltage - k->wheel_damping * x[3] - drag(k->drag[1], x[3]), dx);
+}
+
+MCT_INLINE void wheel_dragged_alone(const mct_reaction_wheel_constants *k, const mct_real *x, mct_real s,
+                                    mct_real voltage, mct_real *dx)
+{
+    turned(k, x, k->weight_moment * s - drag(k->drag[0], x[2]),
+           k->motor.force_per_ampere * x[4] - drag(k->drag[1], x[3]), dx);
+    wheel_current_rate(k, x, voltage, dx);
+}
+
+MCT_INLINE void wheel_dragged_level(const mct_reaction_wheel_constants *k, const mct_real *x, mct_real s,
+                                    mct_real voltage, mct_real *dx)
+{
+    (void)s;
+    turned(k, x, -(k->arm_viscous * x[2]) - drag(k->drag[0], x[2]),
+           k->motor.force_per_ampere * x[4] - k->wheel_viscous * x[3] - drag(k->drag[1], x[3]), dx);
+    wheel_current_rate(k, x, voltage, dx);
+}
+
 MCT_INLINE void wheel_rk4_step(wheel_rates rates, int states, const mct_reaction_wheel_constants *k,
                                const mct_real *x, mct_real input, mct_real *dx)
 {
@@ -401,7 +513,7 @@ MCT_INLINE void wheel_rk4_step(wheel_rates rates, int states, const mct_reaction
 
 MCT_INLINE void wheel_friction(const mct_reaction_wheel_constants *k, const mct_real *x, mct_real *dx)
 {
-    mct_friction_correct(k->inertia, k->coulomb, k->step.h, x + 2, dx);
+    mct_friction_correct(k->inertia, k->coulomb, k->hold, k->step.h, x + 2, dx);
 }
 
 MCT_INLINE void wheel_rk4(wheel_rates rates, int states, const mct_reaction_wheel_constants *k,
@@ -440,6 +552,12 @@ WHEEL(f, 4, wheel_rk4_dry, wheel_driven_at_once)
 WHEEL(13, 5, wheel_rk4, wheel_driven)
 WHEEL(15, 5, wheel_rk4_dry, wheel_driven_smoothly)
 WHEEL(16, 5, wheel_rk4_dry, wheel_driven_level)
+WHEEL(17, 5, wheel_rk4_dry, wheel_driven)
+WHEEL(47, 4, wheel_rk4_dry, wheel_dragged)
+WHEEL(4f, 4, wheel_rk4_dry, wheel_dragged_at_once)
+WHEEL(53, 5, wheel_rk4, wheel_dragged_driven)
+WHEEL(55, 5, wheel_rk4_dry, wheel_dragged_alone)
+WHEEL(56, 5, wheel_rk4_dry, wheel_dragged_level)
 
 /* What follows linearly from the rates, and the current if there is one, and from a sine that stays as it is. */
 MCT_INLINE mct_real response(int rates, const mct_real *row, const mct_real *x, mct_real input, mct_real sine)
@@ -514,6 +632,11 @@ void plain_reaction_wheel_expo_f(const void *constants, mct_state *state, mct_re
 }
 
 void plain_reaction_wheel_expo_15(const void *constants, mct_state *state, mct_real voltage, int32_t steps)
+{
+    expo_dry(3, constants, state, voltage, steps);
+}
+
+void plain_reaction_wheel_expo_17(const void *constants, mct_state *state, mct_real voltage, int32_t steps)
 {
     expo_dry(3, constants, state, voltage, steps);
 }
@@ -598,8 +721,8 @@ int main(int argc, char **argv)
         scene.initial[2] = 0.5;
         scene.initial[3] = 3;
         for (int field = 0; field < cases[i].system->parameter_count; field++) {
-            if (cases[i].system->parameters[field].effects == MCT_COULOMB) {
-                scene.parameters[field] = 1e-3; /* it is 0 by default */
+            if (cases[i].system->parameters[field].effects & (MCT_COULOMB | MCT_DRAG)) {
+                scene.parameters[field] += 1e-3; /* they are 0 by default */
             }
         }
         if (mct_plant_init(&self.start, &scene, &why) != MCT_OK) {
