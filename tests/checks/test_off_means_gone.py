@@ -1,0 +1,246 @@
+"""Off means gone: a kernel is that of a source in which the effects that it lacks had never been written.
+
+For each set of effects that a system has kernels for, all other effects are deleted from the text of its source
+(deletion.py: tests of them, dead branches, operands, what only they read), and what is left is compiled as the library
+was. Held against the library's own object files, kernel by kernel, all of them, in double precision:
+
+- the floating-point operations, with those of the functions called: each as often, in every kernel (SPARE has the few
+  where the compiler copies a path more or less);
+- reads of constants that are 0 since an effect is off: none, so nothing is multiplied by a zero of run time;
+- the path as it runs, for a stepper or two of each system without each of its effects in turn: instructions of a step
+  counted by callgrind, and the states after a thousand steps, which must have the same bits.
+
+Moves are not held to the instruction: gcc gives registers in the order in which names and branches were written, so a
+text with fewer of them has other spills. How many moves that are is bounded for each kernel and close to none on average.
+Effects that act outside kernels, saturation and sensors, leave no instruction there: no kernel's text names them.
+"""
+
+import collections
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+
+import pytest
+from checks import deletion, gone, kernels
+
+WITHIN = 0.1  # of a kernel's executed instructions: spills
+ON_AVERAGE = 0.01  # of them all
+# Operations more or less, of some 700: of the two ways through these steps the compiler joins or copies the ends.
+SPARE = {
+    ("spring_pendulum", "taylor12"): 8,
+    ("rotating_frame", "rk4"): 18,
+    ("falling_sphere", "expo"): 1,
+    ("reaction_wheel", "euler"): 2,
+}
+# Compiled once for all sets of effects, and asking for them as they run: located events of dry friction with the motion
+# between them, and steps close to the pivot, which are rare.
+ONE_FOR_ALL = {"expand", "locate_events", "rare_rk4", "rare_taylor"}
+WITHIN_ONE_FOR_ALL = 0.3
+COUNTED = ("rk4", "expo")  # the steppers that run, of systems that have them
+
+
+@pytest.fixture(scope="module", autouse=True)
+def plain_build(build):
+    if os.environ.get("MCTAU_SANITIZE"):
+        pytest.skip("sanitizers and coverage add instructions of their own")
+    command = kernels.compile_command(build, "src/systems/cart_pole.c", "f64")
+    if "-O2" not in command and "-O3" not in command:
+        pytest.skip("instructions are counted in an optimised build alone")
+    if "clang" in subprocess.run([command[0], "--version"], capture_output=True, text=True).stdout:
+        pytest.skip("clang turns sums and products into vectors as it finds them; instructions are compared with gcc")
+    if not (build / "libmctau.a").exists():
+        pytest.skip("no library in double precision")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("deleted")
+
+
+@pytest.fixture(scope="module")
+def found(build, source, folder):
+    """The library's kernels, but of systems without effects."""
+    every = gone.all_kernels(build, source, folder)
+    most = collections.Counter()
+    for one in every:
+        most[one.system] |= one.effects
+    return [one for one in every if most[one.system]]
+
+
+@pytest.fixture(scope="module")
+def library(build, found):
+    """Functions of the library's object files, by the source's name."""
+    return {file: kernels.functions(kernels.object_file(build, f"src/systems/{file}", "f64"))
+            for file in {one.file for one in found}}
+
+
+@pytest.fixture(scope="module")
+def deleted(build, source, folder, found):
+    """Object files without the other effects, by a kernel's file and effects."""
+    return gone.compile_all(build, source, folder, found)
+
+
+def base_name(symbol):
+    """A function's name without what the compiler adds to a copy of it."""
+    return symbol.partition(".")[0]
+
+
+def differences(library, without, one):
+    """How often the library's kernel has each operation more, and less, than that of the deleted text."""
+    ours, theirs = (kernels.operations(functions, one.symbol) for functions in (library, without))
+    return ours - theirs, theirs - ours
+
+
+def asks_for_effects(library, one):
+    return any(base_name(name) in ONE_FOR_ALL for name in kernels.called(library[one.symbol]))
+
+
+def zeros_read(functions, name):
+    called = kernels.called(functions[name])
+    inner = [zeros_read(functions, other) for other in called if other in functions and other != name]
+    return {other for other in called if other.startswith(deletion.READ)}.union(*inner)
+
+
+def test_every_kernel_has_the_operations_of_a_source_without_the_effects_that_it_lacks(found, library, deleted):
+    without = {pair: kernels.functions(file) for pair, file in deleted.items()}
+    more = {}
+    for one in found:
+        ours, theirs = library[one.file], without[one.file, one.effects]
+        assert not zeros_read(theirs, one.symbol), f"{one} reads what is 0 since an effect is off"
+        if asks_for_effects(ours, one):
+            continue
+        surplus, missing = differences(ours, theirs, one)
+        if sum((surplus + missing).values()) > SPARE.get((one.system, one.stepper), 0):
+            more[str(one)] = f"more: {dict(surplus)}, fewer: {dict(missing)}"
+    assert not more
+
+
+# --- as it runs ---
+
+
+def sets_without_one(every, masks):
+    """The largest set of effects that kernels have, without each of its effects."""
+    fullest = max((one.effects for one in every), key=lambda effects: (effects.bit_count(), effects))
+    return {fullest & ~masks[name] for name in deletion.bits(masks)} - {fullest}
+
+
+@pytest.fixture(scope="module")
+def executed(build, source, folder, found, deleted):
+    """Instructions of a step by kernel: the library's, and the deleted text's."""
+    if shutil.which("valgrind") is None:
+        pytest.skip("valgrind, which counts instructions, is not installed; run tools/setup")
+    measuring = source / "tools" / "benchmark"
+    sys.path.insert(0, str(measuring))
+    import instructions
+
+    masks = deletion.masks(source, {})
+    chosen, objects = [], []
+    for system in dict.fromkeys(one.system for one in found):
+        every = [one for one in found if one.system == system and one.stepper in COUNTED]
+        sets = sets_without_one(every, masks)
+        chosen += [one for one in every if one.effects in sets]
+    for one in chosen:
+        file = folder / f"{one}.o"
+        shutil.copy(deleted[one.file, one.effects], file)
+        for change in (f"--redefine-sym={one.symbol}={one}", f"--keep-global-symbol={one}", f"--globalize-symbol={one}"):
+            subprocess.run(["objcopy", change, file], check=True)  # which takes but one of them at a time
+        objects.append(file)
+    rows = [f'KERNEL("{one.system}", MCT_STEPPER_{one.stepper.upper()}, {one.effects}u, {one})' for one in chosen]
+    (folder / "deleted_kernels.h").write_text(" \\\n".join(["#define CASES", *rows]) + "\n")
+    program = folder / "run_deleted"
+    includes = [f"-I{place}" for place in (folder, build / "include/double", source / "include", source)]
+    compiler = shlex.split(os.environ.get("CC", "cc"))
+    subprocess.run([*compiler, "-std=gnu99", "-O2", *includes, source / "tests/checks/run_deleted.c",
+                    measuring / "measure.c", *objects, build / "libmctau.a", "-o", program], check=True)
+    count = instructions.count(program)
+    return {one: (count[f"library {one}"], count[f"deleted {one}"]) for one in chosen}
+
+
+def test_a_step_runs_as_many_instructions_as_that_of_a_source_without_the_effect(executed, library):
+    apart, for_all = {}, {}
+    for one, (ours, theirs) in executed.items():
+        print(f"{one}: {ours:.0f} instructions a step, {theirs:.0f} of the text without the effect")
+        (for_all if asks_for_effects(library[one.file], one) else apart)[str(one)] = (ours - theirs) / theirs
+    assert len(apart) > 40
+    assert not {name: each for name, each in apart.items() if abs(each) > WITHIN}
+    assert abs(sum(apart.values()) / len(apart)) < ON_AVERAGE
+    assert not {name: each for name, each in for_all.items() if each > WITHIN_ONE_FOR_ALL}
+
+
+# --- whether all this would see an effect that is left behind ---
+
+
+@pytest.fixture
+def cart_pole(build, source, folder):
+    """of(old, new): functions of the cart-pole without effects, after a change of its text, as it is and after deletion."""
+    file = "src/systems/cart_pole.c"
+    texts = deletion.read(source, file)
+    masks = deletion.masks(source, texts)
+
+    def of(old, new):
+        assert old in texts[file]
+        changed = texts | {file: texts[file].replace(old, new)}
+        return [kernels.functions(gone.compiled(build, folder, file, changed, masks, 0, deletes))
+                for deletes in (False, True)]
+
+    return of
+
+
+def some_kernel(found):
+    return next(one for one in found if str(one) == "cart_pole_rk4_0")
+
+
+def test_a_term_that_is_multiplied_by_a_zero_of_run_time_is_seen(cart_pole, found):
+    _, deleted = cart_pole("    if (is_cart_damped(effects)) {\n        f1 -= k->cart_damping * pd;\n    }\n",
+                           "    f1 -= k->cart_damping * pd;\n")
+    assert zeros_read(deleted, some_kernel(found).symbol) == {"read_cart_damping"}
+
+
+def test_a_test_of_an_effect_at_run_time_is_seen(cart_pole, found):
+    given, deleted = cart_pole("MCT_INLINE bool is_cart_damped(unsigned effects)\n{\n",
+                               "MCT_INLINE bool is_cart_damped(unsigned effects)\n{\n"
+                               "    __asm__ volatile(\"\" : \"+r\"(effects));\n")
+    surplus, missing = differences(given, deleted, some_kernel(found))
+    assert surplus and not missing
+
+
+# --- what is deleted ---
+
+
+@pytest.mark.parametrize(("text", "left"), [
+    ("if (effects & MCT_GRAVITY) { a = 1; }", ""),
+    ("if (effects & MCT_GRAVITY) { a = 1; } else { a = 2; }", "{ a = 2 ; }"),
+    ("if (!(effects & MCT_GRAVITY)) { a = 1; } else if (b) { a = 2; }", "{ a = 1 ; }"),
+    ("if (effects & (MCT_GRAVITY | MCT_DRAG)) { a = 1; }", "if ( effects & ( MCT_DRAG ) ) { a = 1 ; }"),
+    ("if ((effects & MCT_GRAVITY) && b) { a = 1; }", ""),
+    ("if ((effects & MCT_GRAVITY) || b) { a = 1; }", "if ( b ) { a = 1 ; }"),
+    ("if (b && !(effects & MCT_GRAVITY)) { a = 1; }", "if ( b ) { a = 1 ; }"),
+    ("a = (effects & MCT_GRAVITY) ? b : (effects & MCT_DRAG) ? c : d;", "a = ( effects & MCT_DRAG ) ? c : d ;"),
+    ("return (effects & MCT_MOTOR) != 0 ? f(effects & MCT_GRAVITY, b) : c;",
+     "return ( effects & MCT_MOTOR ) != 0 ? f ( 0 , b ) : c ;"),
+    ("const bool on = effects & MCT_GRAVITY; a = on ? k->on : c;", "a = c ;"),
+    ("for (int i = 0; i < n; i++) { if (effects & MCT_GRAVITY) { a += i; } b(i); }",
+     "for ( int i = 0 ; i < n ; i ++ ) { b ( i ) ; }"),
+    ("a = x & y; effects &= MCT_GRAVITY;", "a = x & y ; effects &= MCT_GRAVITY ;"),
+])  # fmt: skip
+def test_of_a_text_nothing_but_the_effect_is_deleted(source, text, left):
+    masks = deletion.masks(source, {})
+    block = deletion.Deleter(masks, masks["MCT_GRAVITY"]).block(deletion.tokens_of(text))
+    assert " ".join(block) == left
+
+
+def test_no_test_of_a_deleted_effect_is_left(source, found):
+    for file in sorted({one.file for one in found}):
+        texts = deletion.read(source, f"src/systems/{file}")
+        masks = deletion.masks(source, texts)
+        deleter = deletion.Deleter(masks, sum(masks[name] for name in deletion.bits(masks)))
+        assert not {name: left for name, text in deleter.files(texts).items() if (left := deleter.left(text))}
+
+
+def test_no_kernel_knows_of_what_acts_outside(source):
+    """Saturation bounds the input before a kernel sees it; sensors read states behind it: neither is in a kernel's text."""
+    for room in deletion.ROOMS:
+        for path in source.glob(room):
+            assert "SATURATION" not in path.read_text(), path
