@@ -40,7 +40,7 @@ def missing():
     """Why nothing can be counted on this machine, or None."""
     without = [name for name in NEEDED if shutil.which(name) is None]
     if not without:
-        library = _output(["arm-none-eabi-gcc", "-print-file-name=libc.a"]).strip()
+        library = output(["arm-none-eabi-gcc", "-print-file-name=libc.a"]).strip()
         without = [] if os.path.isabs(library) else ["newlib, its C library"]
     if not without:
         return None
@@ -51,7 +51,7 @@ def host_build():
     return pathlib.Path(os.environ.get("MCTAU_BUILD", ROOT / "build" / "host"))
 
 
-def _output(command, timeout=RUN_SECONDS, **options):
+def output(command, timeout=RUN_SECONDS, **options):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=timeout, **options)
     if done.returncode:
         what = " ".join(str(word) for word in command[:3])
@@ -73,22 +73,26 @@ def _compile_here(program, precision, sources, build):
     includes = [f"-I{place}" for place in (build / "include" / precision, ROOT / "include", ROOT)]
     files = [HERE / source for source in sources]
     options = ["-std=c99", "-O1", "-ffp-contract=off"]
-    _output(["cc", *options, *includes, *files, library, "-lpthread", "-lrt", "-o", program])
+    output(["cc", *options, *includes, *files, library, "-lpthread", "-lrt", "-o", program])
+
+
+def build_target(target, name):
+    """Path of an image of hal/cortex_m/CMakeLists.txt, built anew where it is old."""
+    kind = TARGETS[target]
+    folder = ROOT / "build" / f"cortex-{kind}"
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / ".lock", "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two at once would build one folder
+        if not (folder / "build.ninja").exists():
+            output(["cmake", "-S", ROOT / "hal/cortex_m", "-B", folder, "-G", "Ninja", "--toolchain",
+                     ROOT / f"cmake/cortex-{kind}.cmake"])
+        output(["ninja", "-C", folder, "-j", min(2, os.cpu_count() or 1), name])
+    return folder / f"{name}.elf"
 
 
 def build_image(target, system, precision):
     """Path of the image that counts the steppers of one system."""
-    kind = TARGETS[target]
-    folder = ROOT / "build" / f"cortex-{kind}"
-    folder.mkdir(parents=True, exist_ok=True)
-    name = f"count_{system}_{PRECISIONS[precision]}"
-    with open(folder / ".lock", "w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # two at once would build one folder
-        if not (folder / "build.ninja").exists():
-            _output(["cmake", "-S", ROOT / "hal/cortex_m", "-B", folder, "-G", "Ninja", "--toolchain",
-                     ROOT / f"cmake/cortex-{kind}.cmake"])
-        _output(["ninja", "-C", folder, "-j", min(2, os.cpu_count() or 1), name])
-    return folder / f"{name}.elf"
+    return build_target(target, f"count_{system}_{PRECISIONS[precision]}")
 
 
 @contextlib.contextmanager
@@ -133,7 +137,7 @@ def _read(printed):
 
 def run_image(target, image, job):
     """Number of ticks, and a row for each stepper that suits the scene."""
-    return _read(_output([ROOT / "hal/cortex_m/run", TARGETS[target], image, job]))
+    return _read(output([ROOT / "hal/cortex_m/run", TARGETS[target], image, job]))
 
 
 def run_here(job, precision, build=None):
@@ -141,7 +145,7 @@ def run_here(job, precision, build=None):
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder, "count")
         _compile_here(program, precision, ["count.c", "native.c"], build or host_build())
-        return _read(_output([program], env=os.environ | {"COUNT_JOB": str(job)}))
+        return _read(output([program], env=os.environ | {"COUNT_JOB": str(job)}))
 
 
 # --- code ---
@@ -154,7 +158,7 @@ class Code:
 
     def __init__(self, image):
         self.names, self.sizes = {}, {}
-        for line in _output(["arm-none-eabi-nm", "-S", image]).splitlines():
+        for line in output(["arm-none-eabi-nm", "-S", image]).splitlines():
             words = line.split()
             if len(words) == 4 and words[2] in "tTwW":
                 address = int(words[0], 16) & ~1
@@ -162,7 +166,7 @@ class Code:
                 self.sizes[address] = max(self.sizes.get(address, 0), int(words[1], 16))
         self.starts = sorted(self.names)
         self.callees = {start: set() for start in self.starts}
-        for match in self.BRANCH.finditer(_output(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image])):
+        for match in self.BRANCH.finditer(output(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image])):
             own, other = (self.function_at(int(word, 16)) for word in match.groups())
             if own is not None and other is not None:
                 self.callees[own].add(other)
@@ -215,6 +219,6 @@ def measure(scene, target="cortex-m4f", precisions=tuple(PRECISIONS), ticks=1000
                 row["beside"] = max(0, row["tick"]["mean"] - row["step"]["mean"])
                 row["flash"] = code.size_from(row.pop("kernel"))
             rows += found
-    compiler = _output(["arm-none-eabi-gcc", "--version"]).splitlines()[0]
+    compiler = output(["arm-none-eabi-gcc", "--version"]).splitlines()[0]
     about = {"scene": str(scene), "system": system, "target": target, "compiler": compiler}
     return about | {"ticks": ticks, "steppers": rows}

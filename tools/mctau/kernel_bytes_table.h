@@ -1,0 +1,479 @@
+/* Written by tools/effects --flash: bytes of the kernels on a Cortex-M4F, in float. */
+/* clang-format off */
+static const uint16_t cart_pole_seed[32] = {
+    660,688,716,712,2092,2136,2160,2176,684,712,724,720,2116,2160,2164,2180,752,796,832,836,2316,2352,2384,
+    2400,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_euler[32] = {
+    664,700,744,756,2084,2132,2204,2284,700,736,752,764,2128,2180,2212,2284,788,840,888,904,2340,2396,2452,
+    2460,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_leap[32] = {
+    680,716,780,784,2116,2168,2304,2320,724,764,788,792,2168,2220,2304,2348,860,908,972,980,2392,2466,2530,
+    2548,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_rk4[32] = {
+    2268,2354,2438,2454,3672,3776,3852,3890,2312,2410,2446,2462,3720,3836,3856,3894,2602,2764,2848,2854,4056,
+    4216,4300,4328,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_taylor4[32] = {
+    1452,1498,1512,1560,0,0,0,0,1522,1522,1520,1568,0,0,0,0,1750,1784,1820,1876,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_taylor6[32] = {
+    2100,2200,2192,2308,0,0,0,0,2184,2220,2200,2316,0,0,0,0,2516,2544,2620,2720,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_taylor8[32] = {
+    2864,2996,2984,3128,0,0,0,0,2980,3040,2988,3136,0,0,0,0,3472,3492,3556,3692,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t cart_pole_taylor12[32] = {
+    4936,5148,5124,5380,0,0,0,0,5116,5216,5124,5396,0,0,0,0,5836,5920,6008,6260,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_seed[32] = {
+    276,592,300,616,1280,1596,1320,1672,296,616,308,624,1304,1620,1324,1692,368,684,388,708,1432,1792,1560,
+    1826,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_euler[32] = {
+    276,592,300,620,1272,1584,1312,1664,296,616,308,628,1304,1612,1316,1676,384,700,408,736,1452,1774,1552,
+    1826,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_leap[32] = {
+    288,612,312,636,1292,1624,1392,1724,308,636,320,644,1380,1708,1396,1728,408,752,436,792,1556,1936,1588,
+    1972,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_rk4[32] = {
+    360,1944,500,2048,1424,3008,1580,3108,472,2008,508,2056,1540,3068,1584,3112,628,2296,784,2420,1756,3352,
+    1900,3498,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_taylor4[32] = {
+    452,972,548,1044,0,0,0,0,528,1016,556,1060,0,0,0,0,744,1200,824,1302,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_taylor6[32] = {
+    564,1308,768,1426,0,0,0,0,736,1366,780,1434,0,0,0,0,992,1670,1140,1816,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_taylor8[32] = {
+    712,1768,980,1952,0,0,0,0,964,1872,992,1960,0,0,0,0,1268,2244,1448,2420,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_taylor12[32] = {
+    936,2936,1432,3184,0,0,0,0,1452,3080,1436,3188,0,0,0,0,1892,3636,2108,3880,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_expo[32] = {
+    336,1984,340,1988,1400,3056,1400,3056,340,1988,340,1988,1400,3056,1400,3056,524,2252,528,2256,1688,3346,
+    1688,3346,0,0,0,0,0,0,0,0,
+};
+static const uint16_t reaction_wheel_expo8[32] = {
+    340,7848,340,7852,0,0,0,0,340,7852,340,7852,0,0,0,0,528,8152,528,8156,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t pendulum_seed[16] = {
+    138,464,150,476,328,632,336,644,184,500,196,512,360,672,372,684,
+};
+static const uint16_t pendulum_euler[16] = {
+    130,456,150,476,312,620,332,640,192,508,208,524,364,676,380,692,
+};
+static const uint16_t pendulum_leap[16] = {
+    138,472,166,500,328,644,340,652,200,524,224,552,376,696,396,748,
+};
+static const uint16_t pendulum_rk4[16] = {
+    182,1562,246,1608,380,1778,424,1826,358,1724,394,1768,520,1948,556,2000,
+};
+static const uint16_t pendulum_taylor4[16] = {
+    138,716,260,776,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t pendulum_taylor6[16] = {
+    138,944,324,1064,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t pendulum_taylor8[16] = {
+    138,1308,384,1470,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t pendulum_taylor12[16] = {
+    138,2316,624,2556,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t pendulum_rkn6[16] = {
+    256,2518,0,0,0,0,0,0,0,0,0,0,0,0,0,0,
+};
+static const uint16_t spring_pendulum_seed[8] = {
+    512,864,552,912,532,892,568,932,
+};
+static const uint16_t spring_pendulum_euler[8] = {
+    1456,1832,1632,2000,1526,1900,1720,2080,
+};
+static const uint16_t spring_pendulum_leap[8] = {
+    1716,2096,1920,2300,1800,2160,1984,2344,
+};
+static const uint16_t spring_pendulum_rk4[8] = {
+    2938,2938,2938,2938,3502,5216,3606,5344,
+};
+static const uint16_t spring_pendulum_taylor4[8] = {
+    5610,5610,5610,5610,6304,6858,6372,6970,
+};
+static const uint16_t spring_pendulum_taylor6[8] = {
+    5610,5610,5610,5610,6764,7622,6868,7734,
+};
+static const uint16_t spring_pendulum_taylor8[8] = {
+    5610,5610,5610,5610,7338,8680,7450,8832,
+};
+static const uint16_t spring_pendulum_taylor12[8] = {
+    4628,5096,6332,6784,5448,5856,6700,7044,
+};
+static const uint16_t linked_particles_seed[2] = {
+    138,146,
+};
+static const uint16_t linked_particles_euler[2] = {
+    130,138,
+};
+static const uint16_t linked_particles_leap[2] = {
+    138,146,
+};
+static const uint16_t linked_particles_rk4[2] = {
+    182,190,
+};
+static const uint16_t particle_pendulum_seed[8] = {
+    138,508,150,520,328,676,336,688,
+};
+static const uint16_t particle_pendulum_euler[8] = {
+    130,500,150,520,312,664,332,684,
+};
+static const uint16_t particle_pendulum_leap[8] = {
+    138,516,166,556,328,684,340,720,
+};
+static const uint16_t particle_pendulum_rk4[8] = {
+    182,1800,246,1852,380,2028,424,2072,
+};
+static const uint16_t particle_pendulum_taylor4[8] = {
+    138,796,260,848,0,0,0,0,
+};
+static const uint16_t particle_pendulum_taylor6[8] = {
+    138,1124,324,1256,0,0,0,0,
+};
+static const uint16_t particle_pendulum_taylor8[8] = {
+    138,1544,384,1716,0,0,0,0,
+};
+static const uint16_t particle_pendulum_taylor12[8] = {
+    138,2640,624,2888,0,0,0,0,
+};
+static const uint16_t particle_pendulum_rkn6[8] = {
+    256,2834,0,0,0,0,0,0,
+};
+static const uint16_t moving_base_seed[8] = {
+    138,464,150,476,1020,1060,1060,1080,
+};
+static const uint16_t moving_base_euler[8] = {
+    130,456,150,476,992,1040,1048,1068,
+};
+static const uint16_t moving_base_leap[8] = {
+    138,472,166,500,1004,1056,1056,1076,
+};
+static const uint16_t moving_base_rk4[8] = {
+    182,1562,246,1608,3420,3496,3522,3570,
+};
+static const uint16_t moving_base_taylor4[8] = {
+    232,744,300,768,1714,1758,1758,1794,
+};
+static const uint16_t moving_base_taylor6[8] = {
+    288,968,384,1028,2390,2436,2482,2512,
+};
+static const uint16_t moving_base_taylor8[8] = {
+    368,1298,448,1380,3280,3376,3328,3438,
+};
+static const uint16_t moving_base_taylor12[8] = {
+    484,2308,728,2440,5722,5926,5956,6140,
+};
+static const uint16_t rotating_frame_seed[32] = {
+    4588,4536,4750,4728,4678,4632,4828,4778,4700,4672,4822,4814,4820,4768,4912,4874,4644,4596,4846,4794,4722,
+    4694,4888,4842,4760,4732,4906,4894,4880,4832,5032,4950,
+};
+static const uint16_t rotating_frame_euler[32] = {
+    4552,4516,4710,4678,4648,4612,4802,4740,4872,4838,5012,4972,4970,4934,5114,5032,4612,4576,4814,4750,4686,
+    4670,4848,4798,4956,4922,5096,5056,5054,5018,5198,5116,
+};
+static const uint16_t rotating_frame_leap[32] = {
+    4584,4566,4794,4764,4694,4688,4888,4846,4924,4878,5092,5052,5026,5034,5142,5112,4672,4658,4900,4850,4732,
+    4776,4932,4894,5078,5026,5176,5148,5106,5134,5226,5200,
+};
+static const uint16_t rotating_frame_rk4[32] = {
+    6808,6478,7522,7418,7440,7188,7760,7698,7232,7230,7936,7790,7712,7570,8168,8026,7284,6956,7846,7730,7660,
+    7474,7998,7932,7600,7476,8276,8124,7952,7896,8420,8352,
+};
+static const uint16_t rotating_frame_expo[32] = {
+    0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,7816,7702,0,0,
+};
+static const uint16_t ball_joint_seed[4] = {
+    2696,2914,2736,2956,
+};
+static const uint16_t ball_joint_euler[4] = {
+    2852,3072,2876,3112,
+};
+static const uint16_t ball_joint_leap[4] = {
+    3742,3998,3882,4126,
+};
+static const uint16_t ball_joint_rk4[4] = {
+    3428,4294,3492,4364,
+};
+static const uint16_t ball_joint_taylor4[4] = {
+    2326,2808,2386,2860,
+};
+static const uint16_t ball_joint_taylor6[4] = {
+    2330,2808,2390,2860,
+};
+static const uint16_t ball_joint_taylor8[4] = {
+    2330,2808,2390,2860,
+};
+static const uint16_t ball_joint_taylor12[4] = {
+    2330,2808,2390,2860,
+};
+static const uint16_t ball_joint_split3[4] = {
+    5404,5916,5540,6040,
+};
+static const uint16_t fixed_axis_seed[8] = {
+    138,508,150,520,328,676,336,688,
+};
+static const uint16_t fixed_axis_euler[8] = {
+    130,500,150,520,312,664,332,684,
+};
+static const uint16_t fixed_axis_leap[8] = {
+    138,516,166,556,328,684,340,720,
+};
+static const uint16_t fixed_axis_rk4[8] = {
+    182,1800,246,1852,380,2028,424,2072,
+};
+static const uint16_t fixed_axis_taylor4[8] = {
+    138,796,260,848,0,0,0,0,
+};
+static const uint16_t fixed_axis_taylor6[8] = {
+    138,1124,324,1256,0,0,0,0,
+};
+static const uint16_t fixed_axis_taylor8[8] = {
+    138,1544,384,1716,0,0,0,0,
+};
+static const uint16_t fixed_axis_taylor12[8] = {
+    138,2640,624,2888,0,0,0,0,
+};
+static const uint16_t fixed_axis_rkn6[8] = {
+    256,2834,0,0,0,0,0,0,
+};
+static const uint16_t solid_pendulum_seed[8] = {
+    138,468,150,480,328,636,336,648,
+};
+static const uint16_t solid_pendulum_euler[8] = {
+    130,456,150,480,312,624,332,644,
+};
+static const uint16_t solid_pendulum_leap[8] = {
+    138,476,166,504,328,644,340,656,
+};
+static const uint16_t solid_pendulum_rk4[8] = {
+    182,1570,246,1616,380,1788,424,1836,
+};
+static const uint16_t solid_pendulum_taylor4[8] = {
+    138,716,260,768,0,0,0,0,
+};
+static const uint16_t solid_pendulum_taylor6[8] = {
+    138,940,324,1052,0,0,0,0,
+};
+static const uint16_t solid_pendulum_taylor8[8] = {
+    138,1302,384,1470,0,0,0,0,
+};
+static const uint16_t solid_pendulum_taylor12[8] = {
+    138,2308,624,2548,0,0,0,0,
+};
+static const uint16_t solid_pendulum_rkn6[8] = {
+    256,2528,0,0,0,0,0,0,
+};
+static const uint16_t rigid_body_seed[8] = {
+    2860,2900,3148,3196,3356,3372,3664,3668,
+};
+static const uint16_t rigid_body_euler[8] = {
+    2920,2988,3260,3296,3468,3488,3788,3804,
+};
+static const uint16_t rigid_body_leap[8] = {
+    3918,3974,4450,4502,4458,4490,5034,5050,
+};
+static const uint16_t rigid_body_rk4[8] = {
+    3272,3226,5310,5474,6214,6190,7326,7282,
+};
+static const uint16_t rigid_body_taylor4[8] = {
+    3948,4086,0,0,3586,3604,0,0,
+};
+static const uint16_t rigid_body_taylor6[8] = {
+    3952,4060,0,0,3636,3652,0,0,
+};
+static const uint16_t rigid_body_taylor8[8] = {
+    3952,4060,0,0,3680,3698,0,0,
+};
+static const uint16_t rigid_body_taylor12[8] = {
+    3952,4060,0,0,3782,3800,0,0,
+};
+static const uint16_t rigid_body_split3[8] = {
+    5660,5724,0,0,6680,6684,0,0,
+};
+static const uint16_t chain_discrete[1] = {
+    1476,
+};
+static const uint16_t block_seed[16] = {
+    138,146,364,372,150,184,372,380,624,628,824,828,636,640,836,840,
+};
+static const uint16_t block_euler[16] = {
+    126,134,376,384,138,146,368,380,632,640,836,840,624,628,848,852,
+};
+static const uint16_t block_leap[16] = {
+    134,142,368,376,154,188,380,392,656,664,840,844,684,692,880,884,
+};
+static const uint16_t block_rk4[16] = {
+    182,190,404,412,288,296,492,500,1752,1756,1980,1984,1844,1848,2076,2080,
+};
+static const uint16_t block_expo[16] = {
+    336,340,3214,3218,348,356,3234,3242,1030,1030,3302,3302,1030,1030,3302,3302,
+};
+static const uint16_t falling_sphere_seed[16] = {
+    138,146,184,192,150,158,196,204,146,154,192,200,158,166,204,212,
+};
+static const uint16_t falling_sphere_euler[16] = {
+    130,138,208,216,172,180,224,232,138,146,216,224,180,188,232,240,
+};
+static const uint16_t falling_sphere_leap[16] = {
+    138,146,216,224,212,220,260,268,146,154,224,232,220,204,268,276,
+};
+static const uint16_t falling_sphere_rk4[16] = {
+    182,190,344,352,256,264,386,394,190,198,352,360,264,272,394,402,
+};
+static const uint16_t falling_sphere_expo[16] = {
+    154,162,834,842,158,166,838,846,162,170,842,850,166,174,846,854,
+};
+static const measured_system measured_systems[MCT_SYSTEM_COUNT] = {
+    {0x1f, {
+        [MCT_STEPPER_SEED] = cart_pole_seed,
+        [MCT_STEPPER_EULER] = cart_pole_euler,
+        [MCT_STEPPER_LEAP] = cart_pole_leap,
+        [MCT_STEPPER_RK4] = cart_pole_rk4,
+        [MCT_STEPPER_TAYLOR4] = cart_pole_taylor4,
+        [MCT_STEPPER_TAYLOR6] = cart_pole_taylor6,
+        [MCT_STEPPER_TAYLOR8] = cart_pole_taylor8,
+        [MCT_STEPPER_TAYLOR12] = cart_pole_taylor12,
+    }},
+    {0x1f, {
+        [MCT_STEPPER_SEED] = reaction_wheel_seed,
+        [MCT_STEPPER_EULER] = reaction_wheel_euler,
+        [MCT_STEPPER_LEAP] = reaction_wheel_leap,
+        [MCT_STEPPER_RK4] = reaction_wheel_rk4,
+        [MCT_STEPPER_TAYLOR4] = reaction_wheel_taylor4,
+        [MCT_STEPPER_TAYLOR6] = reaction_wheel_taylor6,
+        [MCT_STEPPER_TAYLOR8] = reaction_wheel_taylor8,
+        [MCT_STEPPER_TAYLOR12] = reaction_wheel_taylor12,
+        [MCT_STEPPER_EXPO] = reaction_wheel_expo,
+        [MCT_STEPPER_EXPO8] = reaction_wheel_expo8,
+    }},
+    {0x47, {
+        [MCT_STEPPER_SEED] = pendulum_seed,
+        [MCT_STEPPER_EULER] = pendulum_euler,
+        [MCT_STEPPER_LEAP] = pendulum_leap,
+        [MCT_STEPPER_RK4] = pendulum_rk4,
+        [MCT_STEPPER_TAYLOR4] = pendulum_taylor4,
+        [MCT_STEPPER_TAYLOR6] = pendulum_taylor6,
+        [MCT_STEPPER_TAYLOR8] = pendulum_taylor8,
+        [MCT_STEPPER_TAYLOR12] = pendulum_taylor12,
+        [MCT_STEPPER_RKN6] = pendulum_rkn6,
+    }},
+    {0x83, {
+        [MCT_STEPPER_SEED] = spring_pendulum_seed,
+        [MCT_STEPPER_EULER] = spring_pendulum_euler,
+        [MCT_STEPPER_LEAP] = spring_pendulum_leap,
+        [MCT_STEPPER_RK4] = spring_pendulum_rk4,
+        [MCT_STEPPER_TAYLOR4] = spring_pendulum_taylor4,
+        [MCT_STEPPER_TAYLOR6] = spring_pendulum_taylor6,
+        [MCT_STEPPER_TAYLOR8] = spring_pendulum_taylor8,
+        [MCT_STEPPER_TAYLOR12] = spring_pendulum_taylor12,
+    }},
+    {0x8000, {
+        [MCT_STEPPER_SEED] = linked_particles_seed,
+        [MCT_STEPPER_EULER] = linked_particles_euler,
+        [MCT_STEPPER_LEAP] = linked_particles_leap,
+        [MCT_STEPPER_RK4] = linked_particles_rk4,
+    }},
+    {0x7, {
+        [MCT_STEPPER_SEED] = particle_pendulum_seed,
+        [MCT_STEPPER_EULER] = particle_pendulum_euler,
+        [MCT_STEPPER_LEAP] = particle_pendulum_leap,
+        [MCT_STEPPER_RK4] = particle_pendulum_rk4,
+        [MCT_STEPPER_TAYLOR4] = particle_pendulum_taylor4,
+        [MCT_STEPPER_TAYLOR6] = particle_pendulum_taylor6,
+        [MCT_STEPPER_TAYLOR8] = particle_pendulum_taylor8,
+        [MCT_STEPPER_TAYLOR12] = particle_pendulum_taylor12,
+        [MCT_STEPPER_RKN6] = particle_pendulum_rkn6,
+    }},
+    {0x103, {
+        [MCT_STEPPER_SEED] = moving_base_seed,
+        [MCT_STEPPER_EULER] = moving_base_euler,
+        [MCT_STEPPER_LEAP] = moving_base_leap,
+        [MCT_STEPPER_RK4] = moving_base_rk4,
+        [MCT_STEPPER_TAYLOR4] = moving_base_taylor4,
+        [MCT_STEPPER_TAYLOR6] = moving_base_taylor6,
+        [MCT_STEPPER_TAYLOR8] = moving_base_taylor8,
+        [MCT_STEPPER_TAYLOR12] = moving_base_taylor12,
+    }},
+    {0xe41, {
+        [MCT_STEPPER_SEED] = rotating_frame_seed,
+        [MCT_STEPPER_EULER] = rotating_frame_euler,
+        [MCT_STEPPER_LEAP] = rotating_frame_leap,
+        [MCT_STEPPER_RK4] = rotating_frame_rk4,
+        [MCT_STEPPER_EXPO] = rotating_frame_expo,
+    }},
+    {0x3, {
+        [MCT_STEPPER_SEED] = ball_joint_seed,
+        [MCT_STEPPER_EULER] = ball_joint_euler,
+        [MCT_STEPPER_LEAP] = ball_joint_leap,
+        [MCT_STEPPER_RK4] = ball_joint_rk4,
+        [MCT_STEPPER_TAYLOR4] = ball_joint_taylor4,
+        [MCT_STEPPER_TAYLOR6] = ball_joint_taylor6,
+        [MCT_STEPPER_TAYLOR8] = ball_joint_taylor8,
+        [MCT_STEPPER_TAYLOR12] = ball_joint_taylor12,
+        [MCT_STEPPER_SPLIT3] = ball_joint_split3,
+    }},
+    {0x7, {
+        [MCT_STEPPER_SEED] = fixed_axis_seed,
+        [MCT_STEPPER_EULER] = fixed_axis_euler,
+        [MCT_STEPPER_LEAP] = fixed_axis_leap,
+        [MCT_STEPPER_RK4] = fixed_axis_rk4,
+        [MCT_STEPPER_TAYLOR4] = fixed_axis_taylor4,
+        [MCT_STEPPER_TAYLOR6] = fixed_axis_taylor6,
+        [MCT_STEPPER_TAYLOR8] = fixed_axis_taylor8,
+        [MCT_STEPPER_TAYLOR12] = fixed_axis_taylor12,
+        [MCT_STEPPER_RKN6] = fixed_axis_rkn6,
+    }},
+    {0x7, {
+        [MCT_STEPPER_SEED] = solid_pendulum_seed,
+        [MCT_STEPPER_EULER] = solid_pendulum_euler,
+        [MCT_STEPPER_LEAP] = solid_pendulum_leap,
+        [MCT_STEPPER_RK4] = solid_pendulum_rk4,
+        [MCT_STEPPER_TAYLOR4] = solid_pendulum_taylor4,
+        [MCT_STEPPER_TAYLOR6] = solid_pendulum_taylor6,
+        [MCT_STEPPER_TAYLOR8] = solid_pendulum_taylor8,
+        [MCT_STEPPER_TAYLOR12] = solid_pendulum_taylor12,
+        [MCT_STEPPER_RKN6] = solid_pendulum_rkn6,
+    }},
+    {0x8041, {
+        [MCT_STEPPER_SEED] = rigid_body_seed,
+        [MCT_STEPPER_EULER] = rigid_body_euler,
+        [MCT_STEPPER_LEAP] = rigid_body_leap,
+        [MCT_STEPPER_RK4] = rigid_body_rk4,
+        [MCT_STEPPER_TAYLOR4] = rigid_body_taylor4,
+        [MCT_STEPPER_TAYLOR6] = rigid_body_taylor6,
+        [MCT_STEPPER_TAYLOR8] = rigid_body_taylor8,
+        [MCT_STEPPER_TAYLOR12] = rigid_body_taylor12,
+        [MCT_STEPPER_SPLIT3] = rigid_body_split3,
+    }},
+    {0x0, {
+        [MCT_STEPPER_DISCRETE] = chain_discrete,
+    }},
+    {0x4085, {
+        [MCT_STEPPER_SEED] = block_seed,
+        [MCT_STEPPER_EULER] = block_euler,
+        [MCT_STEPPER_LEAP] = block_leap,
+        [MCT_STEPPER_RK4] = block_rk4,
+        [MCT_STEPPER_EXPO] = block_expo,
+    }},
+    {0x3041, {
+        [MCT_STEPPER_SEED] = falling_sphere_seed,
+        [MCT_STEPPER_EULER] = falling_sphere_euler,
+        [MCT_STEPPER_LEAP] = falling_sphere_leap,
+        [MCT_STEPPER_RK4] = falling_sphere_rk4,
+        [MCT_STEPPER_EXPO] = falling_sphere_expo,
+    }},
+};
