@@ -63,8 +63,7 @@ static mct_scene scene_of(const study *self, const candidate *one)
     return scene;
 }
 
-/* Whether there is such a kernel, and the system prepares constants for it. */
-static bool suits(const study *self, const candidate *one)
+bool study_suits(const study *self, const candidate *one)
 {
     mct_message why;
     trial nothing = {.ticks = 1};
@@ -207,7 +206,7 @@ static limit limit_of(const study *self, int stepper, double seconds)
         if (known > 1 && 2 * spent > seconds) { /* the next run takes as long as all before it */
             break;
         }
-        if (!suits(self, &run)) {
+        if (!study_suits(self, &run)) {
             continue;
         }
         if (!study_follow(self, &run, rows)) {
@@ -251,7 +250,7 @@ static int best_stepper(const study *self, int but, const bool *refused)
     for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
         const candidate finest = {.stepper = i, .multiple = 1, .substeps = 1 << (LEVELS - 1)};
         const bool better = best < 0 || mct_steppers[i].order >= mct_steppers[best].order;
-        if (!refused[i] && better && (but < 0 || !is_same_family(i, but)) && suits(self, &finest)) {
+        if (!refused[i] && better && (but < 0 || !is_same_family(i, but)) && study_suits(self, &finest)) {
             best = i;
         }
     }
@@ -272,7 +271,7 @@ static void set_scale(study *self, const double *rows)
 static bool follow_somehow(const study *self, candidate *run, double *rows)
 {
     for (run->substeps = 4; run->substeps <= 1 << (LEVELS - 1); run->substeps *= 2) {
-        if (suits(self, run) && study_follow(self, run, rows)) {
+        if (study_suits(self, run) && study_follow(self, run, rows)) {
             return true;
         }
     }
@@ -461,7 +460,7 @@ static int add(const study *self, candidate one, candidate *found, int count)
 {
     one.step = one.multiple * self->scene.dt / one.substeps;
     one.instructions = one.predicted = (double)NAN;
-    if (count == MAX_CANDIDATES || !suits(self, &one)) {
+    if (count == MAX_CANDIDATES || !study_suits(self, &one)) {
         return count;
     }
     found[count] = one;

@@ -92,6 +92,9 @@ void study_json(const study *self, json *out);
  */
 int study_candidates(const study *self, int precision, bool deep, candidate *found);
 
+/* Whether there is such a kernel, and the system prepares constants for it. */
+bool study_suits(const study *self, const candidate *one);
+
 /* States of a candidate's run, those after its ticks; `rows` has room for those of the reference. */
 bool study_follow(const study *self, const candidate *one, double *rows);
 double *study_rows(const study *self);

@@ -6,6 +6,7 @@
 #include "mctau/input.h"
 #include "mctau/judge.h"
 #include "mctau/plant.h"
+#include "runner_advise.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
 #include "runner_replay.h"
@@ -123,4 +124,7 @@ const mct_runner MCT_RUNNER = {
     .drive = runner_drive,
     .inputs = runner_inputs,
     .try = runner_try,
+    .loop = runner_loop,
+    .depart = runner_depart,
+    .time_scale = runner_time_scale,
 };
