@@ -38,9 +38,10 @@ const verb verb_advise = {
         "by a run against the full one: if they differ by more, the last that was dropped is taken back.\n"
         "The estimate is to first order: what the effect does in each tick, carried on by the derivative of "
         "the scene's tick.\n"
-        "With a controller, and of dry friction, it is a run without the effect. The difference of two runs "
-        "is that of their\n"
-        "worst state at the worst tick, relative to the state's largest value or to 1; a motor's current and "
+        "With a controller, of dry friction, and where it is too large for that, it is a run without the "
+        "effect. The difference\n"
+        "of two runs is that of their worst state at the worst tick, relative to the state's largest value "
+        "or to 1; a motor's current and "
         "other states that\n"
         "go with an effect are not compared. Both runs are in double, by the scene's stepper where steps "
         "half as long change\n"
@@ -86,18 +87,20 @@ static const char *value_text(const advice *self, const change *one, double valu
     return scene_value_text(&scene, &one->key, text, LABEL);
 }
 
-/* "gravity", "coulomb exact -> off", "noise 0.5 -> 0 counts" */
+/* "gravity", "coulomb -> off", "noise 0.5 -> 0", "arm_counts_per_turn 4096" */
 static const char *label_of(const advice *self, const change *one, char *text)
 {
     char from[LABEL], to[LABEL];
-    const char *name = one->key.field.name, *unit = one->key.field.unit;
+    const char *name = one->key.field.name;
     const char *begin = value_text(self, one, one->from, from), *end = value_text(self, one, one->to, to);
     if (one->key.field.kind == MCT_FIELD_BOOLEAN) {
         snprintf(text, LABEL, "%s", name);
     } else if (one->from == one->to) {
-        snprintf(text, LABEL, "%s %s%s%s", name, begin, unit[0] != '\0' ? " " : "", unit);
+        snprintf(text, LABEL, "%s %s", name, begin);
+    } else if (one->key.effect != NULL) {
+        snprintf(text, LABEL, "%s -> %s", name, end);
     } else {
-        snprintf(text, LABEL, "%s %s -> %s%s%s", name, begin, end, unit[0] != '\0' ? " " : "", unit);
+        snprintf(text, LABEL, "%s %s -> %s", name, begin, end);
     }
     return text;
 }
@@ -113,7 +116,10 @@ static const char *assignment_of(const advice *self, const change *one, char *te
 
 static const char *state_name(const advice *self, const departure *where)
 {
-    return mct_state_field(mct_systems[self->full.system], where->state)->name;
+    const mct_system *system = mct_systems[self->full.system];
+    const bool is_rotation =
+        system->attitude != MCT_ATTITUDE_NONE && where->state == mct_rate_index(system) - 4;
+    return is_rotation ? "attitude" : mct_state_field(system, where->state)->name;
 }
 
 static double time_of(const advice *self, const departure *where)
@@ -135,8 +141,8 @@ static const char *certificate(const advice *self, char *text, size_t size)
         }
     }
     if (used < (int)size) {
-        snprintf(text + used, size - (size_t)used, "%s; bound %.1e; verified %.1e", count > 0 ? "" : "nothing",
-                 self->bound, self->verified);
+        snprintf(text + used, size - (size_t)used, "%s; bound %.1e; verified %.1e",
+                 count > 0 ? "" : "nothing", self->bound, self->verified);
     }
     return text;
 }
@@ -162,8 +168,9 @@ static int write_scene(const advice *self, const char *path)
         }
     }
     snprintf(comment, sizeof comment,
-             "%s without what a tolerance of %g does not call for, over %g s: mctau advise\n%s (both runs in double by %s at %d "
-             "a tick, known to %.1e)\n",
+             "By mctau advise from %s: what a tolerance of %g calls for, over %g s.\n"
+             "%s.\n"
+             "Both runs in double by %s at %d a tick; steps half as long change %.1e.\n",
              self->file->path, self->tolerance, (double)self->ticks * self->full.dt,
              certificate(self, line, sizeof line), mct_steppers[self->full.stepper].name, self->full.substeps,
              self->uncertainty);
@@ -202,7 +209,8 @@ static void json_change(const advice *self, const change *one, json *out)
     json_number(out, "instructions",
                 is_effect ? self->full_cost.instructions - one->cost.instructions : (double)NAN);
     json_number(out, "flash_bytes",
-                is_effect && one->from != one->to ? advise_flash(self, &self->full_cost, &one->cost) : (double)NAN);
+                is_effect && one->from != one->to ? advise_flash(self, &self->full_cost, &one->cost)
+                                                  : (double)NAN);
     json_text(out, "decision", one->is_dropped ? "drop" : "keep");
     json_text(out, "reason", one->reason);
     json_text(out, "set", one->from != one->to ? assignment_of(self, one, text) : NULL);
@@ -296,7 +304,8 @@ static void print_json(const advice *self)
     json_number(&out, "instructions", self->full_cost.instructions - self->pruned_cost.instructions);
     json_number(&out, "flash_bytes", saved_flash(self));
     json_end_object(&out);
-    json_text(&out, "instructions_counted_by", self->not_counted == NULL ? counter_names[self->counter] : NULL);
+    json_text(&out, "instructions_counted_by",
+              self->not_counted == NULL ? counter_names[self->counter] : NULL);
     json_text(&out, "instructions_not_counted", self->not_counted);
     json_list(&out, "left_out");
     for (int i = 0; i < self->left_out_count; i++) {
@@ -310,36 +319,30 @@ static void print_json(const advice *self)
 
 static const char *number_text(const char *format, double value, char *text)
 {
-    snprintf(text, LABEL, isfinite(value) ? format : isinf(value) ? "diverges" : "-", value);
+    snprintf(text, LABEL, isfinite(value) ? format : "-", value);
     return text;
-}
-
-static void print_estimate(const advice *self, const change *one)
-{
-    char text[LABEL], scale[LABEL];
-    printf("%10s%c ", number_text("%.3g s", one->time_scale, scale),
-           advise_is_near_tick(self, one->time_scale) ? '~' : ' ');
-    (void)text;
 }
 
 static void print_change(const advice *self, const change *one)
 {
-    char label[LABEL], ns[LABEL], instructions[LABEL], flash[LABEL], size[LABEL], where[LABEL] = "";
-    const bool is_effect = one->key.effect != NULL && one->from != one->to;
+    char label[LABEL], scale[LABEL], ns[LABEL], instructions[LABEL], flash[LABEL], size[LABEL],
+        where[LABEL] = "";
+    const bool has_cost = one->key.effect != NULL && one->from != one->to;
     const double nan = (double)NAN;
-    printf("%-4s %-31s", one->is_dropped ? "drop" : "keep", label_of(self, one, label));
-    print_estimate(self, one);
-    printf("%6s %6s %6s  %8s%c",
-           number_text("%.1f", is_effect ? self->full_cost.ns - one->cost.ns : nan, ns),
-           number_text("%.0f", is_effect ? self->full_cost.instructions - one->cost.instructions : nan,
-                       instructions),
-           number_text("%.0f", is_effect ? advise_flash(self, &self->full_cost, &one->cost) : nan, flash),
-           number_text("%.1e", one->estimate.size, size), one->by_run ? '*' : ' ');
     if (isfinite(one->estimate.size) && one->estimate.size > 0) {
         snprintf(where, sizeof where, "%s, %.3g s", state_name(self, &one->estimate),
                  time_of(self, &one->estimate));
     }
-    printf(" %s\n", one->is_fixed ? one->reason : where);
+    const bool is_told = one->is_fixed || isinf(one->estimate.size);
+    printf("%-4s %-27s%10s%c%7s%7s%7s%9s%c %s\n", one->is_dropped ? "drop" : "keep",
+           label_of(self, one, label), number_text("%.3g s", one->time_scale, scale),
+           advise_is_near_tick(self, one->time_scale) ? '~' : ' ',
+           number_text("%.1f", has_cost ? self->full_cost.ns - one->cost.ns : nan, ns),
+           number_text("%.0f", has_cost ? self->full_cost.instructions - one->cost.instructions : nan,
+                       instructions),
+           number_text("%.0f", has_cost ? advise_flash(self, &self->full_cost, &one->cost) : nan, flash),
+           number_text("%.1e", one->estimate.size, size), one->by_run && !one->is_fixed ? '*' : ' ',
+           is_told ? one->reason : where);
 }
 
 static void print_coefficients(const advice *self, const change *one)
@@ -371,7 +374,8 @@ static void print_left_out(const advice *self, const change *one)
         printf("      %s\n", one->reason);
         return;
     }
-    printf("      would change %s by ", isfinite(one->estimate.size) ? state_name(self, &one->estimate) : "the run");
+    printf("      would change %s by ",
+           isfinite(one->estimate.size) ? state_name(self, &one->estimate) : "the run");
     if (isfinite(one->estimate.size)) {
         printf("%.1e at %.3g s", one->estimate.size, time_of(self, &one->estimate));
     } else {
@@ -385,10 +389,10 @@ static void print_left_out(const advice *self, const change *one)
     printf("\n");
 }
 
-static void print_saving(const char *what, double full, double pruned)
+static void print_saving(const char *before, int digits, const char *what, double full, double pruned)
 {
     if (!isnan(full) && !isnan(pruned)) {
-        printf(", %.4g of %.4g %s", full - pruned, full, what);
+        printf("%s%.*f of %.*f %s", before, digits, full - pruned, digits, full, what);
     }
 }
 
@@ -401,12 +405,10 @@ static void print_certificate(const advice *self)
         printf("Verification took back %d that the estimates had promised.\n", self->taken_back);
     }
     if (strstr(text, "nothing") == NULL) {
-        printf("saves: ");
-        printf("%.1f of %.1f ns", self->full_cost.ns - self->pruned_cost.ns, self->full_cost.ns);
-        print_saving("instructions", self->full_cost.instructions, self->pruned_cost.instructions);
-        printf(" a tick");
+        print_saving("saves: ", 1, "ns", self->full_cost.ns, self->pruned_cost.ns);
+        print_saving(", ", 0, "instructions", self->full_cost.instructions, self->pruned_cost.instructions);
         if (!isnan(flash)) {
-            printf("; %.0f bytes of flash", flash);
+            printf(" a tick; %.0f bytes of flash", flash);
         }
         printf("\nto run it: mctau run %s", self->file->path);
         for (int i = 0; i < self->count; i++) {
@@ -426,15 +428,16 @@ static void print_text(const advice *self)
            mct_steppers[self->full.stepper].name, self->full.substeps, self->full.substeps > 1 ? "s" : "",
            self->uncertainty);
     if (self->count > 0) {
-        printf("     %-31s%10s  %6s %6s %6s  %8s  %s\n", "effect", "time scale", "ns", "instr", "flash", "change",
+        printf("     %-27s%10s %7s%7s%7s%9s  %s\n", "effect", "time scale", "ns", "instr", "flash", "change",
                "most of all");
     }
     for (int i = 0; i < self->count; i++) {
         print_change(self, &self->list[i]);
     }
-    printf(self->count > 0 ? "\nns, instructions a tick and bytes of flash on a Cortex-M4F that it takes; the "
-                             "change of the run without it.\n~ near the tick; * by a run, else to first order"
-                           : "No effect is on");
+    printf(self->count > 0
+               ? "\nns, instructions a tick and bytes of flash on a Cortex-M4F that it takes; the "
+                 "change of the run without it.\n~ near the tick; * by a run, else to first order"
+               : "No effect is on");
     printf(self->not_counted != NULL ? ". Instructions: not counted: %s.\n\n" : ".\n\n", self->not_counted);
     if (self->is_certified) {
         print_certificate(self);

@@ -18,6 +18,7 @@ typedef struct {
     double from, to;    /* its value: of a choice the index */
     const char *reason; /* why it is kept or dropped */
     bool is_fixed;      /* kept without asking */
+    bool needs_stepper; /* and that because the scene's stepper does not suit without it */
     bool is_dropped;
     bool by_run;       /* the estimate: a run without it, not to first order */
     double time_scale; /* [s]; NaN: none */
@@ -63,7 +64,7 @@ void advise_end(advice *self);
 /* Under valgrind: counts what `note` names, for the process that has asked. Gives the exit code. */
 int advise_count_again(const scene_file *file, const char *note);
 
-/* The scene as it was read, without what is dropped; its stepper changes where it does not suit any more. */
+/* The scene as it was read, without what is dropped. */
 mct_scene advise_pruned_scene(const advice *self);
 
 /* Bytes of flash that a change saves; NaN: not known. */

@@ -9,7 +9,8 @@
 #include "say.h"
 
 enum { MOST_SUBSTEPS = 128 };
-#define ACCURATE 0.05 /* of the tolerance: a stepper's own error that does not blur what effects do */
+#define FIRST_ORDER 0.05 /* an estimate up to which it is used */
+#define ACCURATE    0.05 /* of the tolerance: a stepper's own error that does not blur what effects do */
 
 static const mct_system *system_of(const advice *self)
 {
@@ -20,6 +21,16 @@ static mct_scene changed(const mct_scene *scene, const change *one)
 {
     mct_scene result = *scene;
     mct_key_set(&result, &one->key, one->to);
+    return result;
+}
+
+/* Without what does nothing, and a reader refuses: a bound of a motor's voltage where there is no motor. */
+static mct_scene with_acting_effects(const mct_scene *scene)
+{
+    mct_scene result = *scene;
+    if (!(scene->effects & MCT_MOTOR)) {
+        result.effects &= ~(uint32_t)MCT_SATURATION;
+    }
     return result;
 }
 
@@ -85,8 +96,7 @@ static void find_sensors(advice *self)
             change *one = add_change(self->list, &self->count, table, key, value, 0);
             one->time_scale = is_latency ? value * self->full.dt : (double)NAN;
         } else if (is_encoder) {
-            keep(add_change(self->list, &self->count, table, key, value, value),
-                 "an encoder is how the controller sees");
+            keep(add_change(self->list, &self->count, table, key, value, value), "how the controller sees");
         }
     }
 }
@@ -136,8 +146,7 @@ static double *follow(const advice *self, const mct_scene *scene)
 {
     mct_message why;
     const mct_runner *runner = find_runner(MCT_PRECISION_DOUBLE);
-    double *rows =
-        need_memory(malloc((self->ticks + 1) * (uint64_t)width_of(scene) * sizeof *rows));
+    double *rows = need_memory(malloc((self->ticks + 1) * (uint64_t)width_of(scene) * sizeof *rows));
     trial asked = {.inputs = self->about.inputs, .ticks = self->ticks, .states = rows};
     mct_status status = mct_scene_check(scene, &why);
     if (status == MCT_OK) {
@@ -153,7 +162,7 @@ static double *follow(const advice *self, const mct_scene *scene)
 
 /* Where two runs differ most; infinite when there is no second one. */
 static departure compare(const advice *self, const double *rows, int width, const double *others,
-                          int other_width)
+                         int other_width)
 {
     departure found = {others == NULL ? (double)INFINITY : 0, 0, 0};
     for (uint64_t tick = 0; others != NULL && tick <= self->ticks; tick++) {
@@ -216,7 +225,7 @@ static bool suits_all(const advice *self, const change *list, int count, method 
     bool all = suits(&self->full, how);
     for (int i = 0; i < count && all; i++) {
         const mct_scene other = changed(&self->full, &list[i]);
-        all = suits(&other, how);
+        all = list[i].is_fixed || suits(&other, how);
     }
     return all;
 }
@@ -241,7 +250,8 @@ static void set_scale(advice *self)
     for (int i = 0; i < self->moving; i++) {
         self->scale[i] = 1;
         for (uint64_t tick = 0; tick <= self->ticks; tick++) {
-            self->scale[i] = fmax(self->scale[i], fabs(self->rows[tick * (uint64_t)self->run.width + (uint64_t)i]));
+            self->scale[i] =
+                fmax(self->scale[i], fabs(self->rows[tick * (uint64_t)self->run.width + (uint64_t)i]));
         }
     }
 }
@@ -266,15 +276,16 @@ static bool run_full(advice *self, method how)
 static void find_method(advice *self)
 {
     const double allowed = ACCURATE * self->tolerance;
-    method how = {self->full.stepper, self->full.substeps, self->full.stride}, best = how;
-    if (suits_all(self, self->list, self->count, how) && run_full(self, how) && self->own <= allowed) {
-        return;
+    const method own = {self->full.stepper, self->full.substeps, self->full.stride};
+    method how = best_method(self, self->list, self->count), best = own;
+    double least = (double)INFINITY;
+    if (suits_all(self, self->list, self->count, own) && run_full(self, own)) {
+        least = self->own;
     }
-    double least = suits(&self->full, how) && self->rows != NULL ? self->own : (double)INFINITY;
-    how = best_method(self, self->list, self->count);
-    how = how.substeps > 0 ? how : best_method(self, NULL, 0);
-    for (; how.substeps > 0 && how.substeps <= MOST_SUBSTEPS && least > allowed; how.substeps *= 2) {
-        if (run_full(self, how) && self->own < least) {
+    bool falls = true; /* not where encoders count: there any difference grows to a count's */
+    for (; how.substeps > 0 && how.substeps <= MOST_SUBSTEPS && falls && least > allowed; how.substeps *= 2) {
+        falls = !run_full(self, how) || self->own < 0.5 * least;
+        if (falls && self->rows != NULL) {
             least = self->own;
             best = how;
         }
@@ -284,65 +295,93 @@ static void find_method(advice *self)
 
 /* --- estimates --- */
 
-/* To first order all at once, but where friction has a kink or a controller closes the loop: those by runs. */
-static void estimate(advice *self, change *list, int count)
+/* To first order: what each does in a tick, carried on. */
+static void estimate_first_order(advice *self, change *list, int count)
 {
     int places[MOST_CHANGES], others = 0;
     departure found[MOST_CHANGES];
+    mct_message why;
     const method ticked = {self->full.stepper, self->full.substeps, 1}; /* a defect is one tick's */
+    const mct_scene full = by_method(&self->full, ticked);
     mct_scene *scenes = need_memory(malloc(MOST_CHANGES * sizeof *scenes));
     for (int i = 0; i < count; i++) {
-        change *one = &list[i];
-        const mct_scene other = changed(&self->full, one);
-        const mct_scene *with = one->to < one->from ? &self->full : &other;
-        const mct_scene *without = one->to < one->from ? &other : &self->full;
-        if (one->key.effect != NULL && one->to != one->from) {
-            one->time_scale = find_runner(MCT_PRECISION_DOUBLE)->time_scale(with, without, &self->run);
-        }
-        if (one->is_fixed) {
-            continue;
-        }
-        if (mct_scene_check(&other, NULL) != MCT_OK) {
-            keep(one, "no stepper suits with it and without it");
-            continue;
-        }
-        one->by_run = self->is_loop || (one->key.effect->mask & MCT_COULOMB) != 0;
-        if (one->by_run) {
-            one->estimate = departure_of(self, &other);
-        } else {
+        if (!list[i].is_fixed && !list[i].by_run) {
+            const mct_scene other = changed(&self->full, &list[i]);
             places[others] = i;
             scenes[others++] = by_method(&other, ticked);
         }
     }
-    mct_message why;
-    const mct_scene full = by_method(&self->full, ticked);
-    const bool well = others == 0 || find_runner(MCT_PRECISION_DOUBLE)
-                                             ->depart(&full, &self->run, self->scale, scenes, others, found,
-                                                      &why) == MCT_OK;
-    for (int i = 0; i < others && well; i++) {
+    const mct_status status = find_runner(MCT_PRECISION_DOUBLE)
+                                  ->depart(&full, &self->run, self->scale, scenes, others, found, &why);
+    for (int i = 0; i < others && status == MCT_OK; i++) {
         list[places[i]].estimate = found[i];
     }
     free(scenes);
 }
 
-/* Beside a full run by a stepper that has the further effects, too: each has its own. */
-static void estimate_left_out(advice *self)
+/*
+ * To first order; but by a run where a controller closes the loop, where dry friction holds what would move without it,
+ * and where the estimate is too large for a first order to mean much.
+ */
+static void estimate(advice *self, change *list, int count)
 {
+    for (int i = 0; i < count; i++) {
+        change *one = &list[i];
+        const mct_scene other = changed(&self->full, one);
+        const bool is_on = one->to < one->from;
+        if (one->key.effect != NULL && one->to != one->from) {
+            one->time_scale =
+                find_runner(MCT_PRECISION_DOUBLE)
+                    ->time_scale(is_on ? &self->full : &other, is_on ? &other : &self->full, &self->run);
+        }
+        one->by_run = self->is_loop || (one->key.effect != NULL && (one->key.effect->mask & MCT_COULOMB));
+    }
+    if (!self->is_loop) {
+        estimate_first_order(self, list, count);
+    }
+    for (int i = 0; i < count; i++) {
+        change *one = &list[i];
+        one->by_run = one->by_run || !(one->estimate.size < FIRST_ORDER);
+        if (!one->is_fixed && one->by_run) {
+            const mct_scene other = changed(&self->full, one);
+            one->estimate = departure_of(self, &other);
+            one->reason = isinf(one->estimate.size) ? "the scene does not run without it" : NULL;
+        }
+    }
+}
+
+/* Of a change that the full run's stepper does not suit: beside a full run by one that does. */
+static void estimate_beside(const advice *self, change *one)
+{
+    advice beside = *self;
+    beside.rows = NULL;
+    const method own = {self->full.stepper, self->full.substeps, self->full.stride};
+    const bool was_fixed = one->is_fixed;
+    one->is_fixed = false;
+    method how = suits_all(self, one, 1, own) ? own : best_method(self, one, 1);
+    if (how.substeps > 0 && how.substeps < self->full.substeps) {
+        how.substeps = self->full.substeps;
+    }
+    if (how.substeps > 0 && run_full(&beside, how)) {
+        estimate(&beside, one, 1);
+    } else {
+        keep(one, "no stepper suits with it and without it");
+    }
+    free(beside.rows);
+    one->is_fixed = one->is_fixed || was_fixed;
+}
+
+static void estimate_all(advice *self)
+{
+    estimate(self, self->list, self->count);
+    for (int i = 0; i < self->count; i++) {
+        if (self->list[i].needs_stepper) {
+            estimate_beside(self, &self->list[i]);
+            keep(&self->list[i], "the scene's stepper needs it");
+        }
+    }
     for (int i = 0; i < self->left_out_count; i++) {
-        advice beside = *self;
-        beside.rows = NULL;
-        change *one = &self->left_out[i];
-        const method own = {self->full.stepper, self->full.substeps, self->full.stride};
-        method how = suits_all(self, one, 1, own) ? own : best_method(self, one, 1);
-        if (how.substeps > 0 && how.substeps < self->full.substeps) {
-            how.substeps = self->full.substeps;
-        }
-        if (how.substeps > 0 && run_full(&beside, how)) {
-            estimate(&beside, one, 1);
-        } else {
-            keep(one, "no stepper suits with it and without it");
-        }
-        free(beside.rows);
+        estimate_beside(self, &self->left_out[i]);
     }
 }
 
@@ -439,6 +478,13 @@ static void choose(advice *self)
         last->reason = "verification refused to drop it";
         self->bound -= last->estimate.size;
         self->taken_back++;
+        for (int i = dropped - 1; i >= 0 && dropped_before(self, last) == NULL; i--) {
+            if (strcmp(order[i]->key.field.name, last->key.field.name) == 0) { /* what it had replaced */
+                order[i]->is_dropped = true;
+                order[i]->reason = "changes little";
+                self->bound += order[i]->estimate.size;
+            }
+        }
     }
     for (int i = 0; i < self->count; i++) {
         change *one = &self->list[i];
@@ -452,14 +498,8 @@ static void choose(advice *self)
 
 mct_scene advise_pruned_scene(const advice *self)
 {
-    mct_scene result = without_dropped(self, &self->file->scene);
-    const method own = {result.stepper, result.substeps, result.stride};
-    if (!(result.effects & MCT_MOTOR)) {
-        result.effects &= ~(uint32_t)MCT_SATURATION; /* which nothing reads, and a reader refuses */
-    }
-    return suits(&result, own)
-               ? result
-               : by_method(&result, (method){self->full.stepper, self->full.substeps, self->full.stride});
+    const mct_scene scene = with_acting_effects(&self->file->scene);
+    return without_dropped(self, &scene);
 }
 
 /* --- costs --- */
@@ -558,14 +598,23 @@ bool advise_is_near_tick(const advice *self, double time_scale)
 
 /* --- all of it --- */
 
+/* What the scene's stepper needs stays, unless it is chosen anew at every run. */
+static void keep_what_stepper_needs(advice *self)
+{
+    const mct_scene *scene = &self->file->scene;
+    for (int i = 0; i < self->count && !scene->automatic; i++) {
+        const mct_scene other = changed(scene, &self->list[i]);
+        if (mct_scene_check(&other, NULL) != MCT_OK) {
+            self->list[i].needs_stepper = self->list[i].is_fixed = true;
+        }
+    }
+}
+
 static void find_scene(advice *self)
 {
     self->is_loop = self->file->scene.controller != MCT_CONTROLLER_NONE;
-    self->full = self->is_loop ? self->file->scene : self->about.scene;
+    self->full = with_acting_effects(self->is_loop ? &self->file->scene : &self->about.scene);
     self->full.precision = MCT_PRECISION_DOUBLE;
-    if (!(self->full.effects & MCT_MOTOR)) {
-        self->full.effects &= ~(uint32_t)MCT_SATURATION; /* which nothing reads */
-    }
     self->ticks = self->about.ticks;
     self->full.duration = (double)self->ticks * self->full.dt;
     self->moving = mct_rate_index(system_of(self)) + system_of(self)->coordinate_count;
@@ -592,14 +641,15 @@ int advise_begin(advice *self, const scene_file *file, double tolerance, int cou
     if (self->is_loop) {
         find_sensors(self);
     }
+    keep_what_stepper_needs(self);
     find_left_out(self);
     find_method(self);
     if (self->rows == NULL) {
         advise_end(self);
-        return say(EXIT_CHECK_FAILED, "the scene diverges: there is nothing to compare with; --duration takes less of it");
+        return say(EXIT_CHECK_FAILED,
+                   "the scene diverges: there is nothing to compare with; --duration takes less of it");
     }
-    estimate(self, self->list, self->count);
-    estimate_left_out(self);
+    estimate_all(self);
     choose(self);
     find_costs(self);
     return 0;

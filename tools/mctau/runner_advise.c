@@ -319,10 +319,15 @@ double runner_time_scale(const mct_scene *with, const mct_scene *without, const 
         return 1 / turning;
     }
     contrast *self = need_memory(calloc(1, sizeof *self));
+    mct_scene both[2] = {*with, *without};
+    const bool responds = (more & MCT_COULOMB) == 0; /* dry friction jumps, its own and what changes it */
+    for (int i = 0; i < 2 && responds; i++) {
+        both[i].effects &= ~(uint32_t)MCT_COULOMB;
+    }
     double found = (double)NAN;
-    if ((more & MCT_KERNEL_EFFECTS) && mct_plant_init(&self->with, with, &why) == MCT_OK &&
-        mct_plant_init(&self->without, without, &why) == MCT_OK) {
-        found = time_of_response(self, along, with->dt, (more & MCT_COULOMB) == 0); /* it jumps */
+    if ((more & MCT_KERNEL_EFFECTS) && mct_plant_init(&self->with, &both[0], &why) == MCT_OK &&
+        mct_plant_init(&self->without, &both[1], &why) == MCT_OK) {
+        found = time_of_response(self, along, with->dt, responds);
     }
     free(self);
     return found;

@@ -108,19 +108,21 @@ static bool is_unread(const mct_scene *scene, int table, const mct_scene_key *ke
 
 static bool is_written_always(int table)
 {
-    return strcmp(mct_table_name(table), "scene") == 0 || table == MCT_TABLE_PARAMETERS || table == MCT_TABLE_EFFECTS ||
-           table == MCT_TABLE_INITIAL;
+    return strcmp(mct_table_name(table), "scene") == 0 || table == MCT_TABLE_PARAMETERS ||
+           table == MCT_TABLE_EFFECTS || table == MCT_TABLE_INITIAL;
 }
 
 /* --- the file --- */
 
 static void write_key(csv_output *out, const char *before, const mct_scene_key *key, const char *value)
 {
-    char line[LONGEST_VALUE + 512], assignment[LONGEST_VALUE + 64];
-    const char *unit = key->field.unit;
+    char line[LONGEST_VALUE + 512], assignment[LONGEST_VALUE + 64], unit[32] = "";
+    if (key->field.unit[0] != '\0') {
+        snprintf(unit, sizeof unit, " [%s]", key->field.unit);
+    }
+    const char *doc = key->field.doc, *space = doc[0] != '\0' ? " " : "";
     snprintf(assignment, sizeof assignment, "%s%s = %s", before, key->field.name, value);
-    const int length = snprintf(line, sizeof line, "%-32s # %s%s%s%s\n", assignment, unit[0] != '\0' ? "[" : "",
-                                unit, unit[0] != '\0' ? "] " : "", key->field.doc);
+    const int length = snprintf(line, sizeof line, "%-32s #%s%s%s\n", assignment, unit, space, doc);
     csv_output_headers(out, line, (size_t)length);
 }
 
@@ -133,8 +135,7 @@ static void write_table(csv_output *out, const mct_scene *scene, const mct_scene
         mct_scene_key key = mct_key_at(table, system, i);
         scene_value_text(scene, &key, value, sizeof value);
         scene_value_text(defaults, &key, standard, sizeof standard);
-        if (is_idle(scene, table, &key, i) ||
-            (!is_written_always(table) && strcmp(value, standard) == 0)) {
+        if (is_idle(scene, table, &key, i) || (!is_written_always(table) && strcmp(value, standard) == 0)) {
             continue;
         }
         if (!is_begun) {
@@ -178,7 +179,8 @@ int scene_write(const mct_scene *scene, const char *comment, const char *path)
             write_table(out, &written, &defaults, table);
         }
         csv_output_close(out);
-        exit_code = out->error != 0 ? say(EXIT_IO, "%s: %s; it is left as it was", path, strerror(out->error)) : 0;
+        exit_code =
+            out->error != 0 ? say(EXIT_IO, "%s: %s; it is left as it was", path, strerror(out->error)) : 0;
     }
     free(out);
     return exit_code;
