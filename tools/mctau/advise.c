@@ -472,6 +472,9 @@ static int advise(const scene_file *file, double tolerance, int counter)
 {
     advice self;
     const char *path = arguments_value(file->given, "write");
+    if (is_same_file(path, file->path) || is_same_file(path, file->samples_path)) {
+        return say(EXIT_USAGE, "--write: found %s, which the scene is read from; allowed another file", path);
+    }
     int exit_code = advise_begin(&self, file, tolerance, counter);
     if (exit_code != 0) {
         return exit_code;

@@ -8,7 +8,7 @@
 #include "mctau/stepper.h"
 #include "say.h"
 
-enum { MOST_SUBSTEPS = 128 };
+enum { MOST_SUBSTEPS = 128, MOST_STEPS = 400000 };
 #define FIRST_ORDER 0.05 /* an estimate up to which it is used */
 #define ACCURATE    0.05 /* of the tolerance: a stepper's own error that does not blur what effects do */
 
@@ -282,13 +282,15 @@ static void find_method(advice *self)
     if (suits_all(self, self->list, self->count, own) && run_full(self, own)) {
         least = self->own;
     }
-    bool falls = true; /* not where encoders count: there any difference grows to a count's */
-    for (; how.substeps > 0 && how.substeps <= MOST_SUBSTEPS && falls && least > allowed; how.substeps *= 2) {
-        falls = !run_full(self, how) || self->own < 0.5 * least;
-        if (falls && self->rows != NULL) {
+    for (bool helps = true; helps && least > allowed && how.substeps > 0; how.substeps *= 2) {
+        const bool better = run_full(self, how) && self->own < 0.5 * least;
+        if (better) {
             least = self->own;
             best = how;
         }
+        /* Not where encoders count: there any difference grows to a count's. */
+        helps = (better || !self->is_loop) && 2 * how.substeps <= MOST_SUBSTEPS &&
+                (uint64_t)how.substeps * self->ticks <= MOST_STEPS;
     }
     (void)run_full(self, best);
 }
