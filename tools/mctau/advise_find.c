@@ -400,6 +400,15 @@ static mct_scene without_dropped(const advice *self, const mct_scene *scene)
     return result;
 }
 
+static double bound_of(const advice *self)
+{
+    double sum = 0;
+    for (int i = 0; i < self->count; i++) {
+        sum += self->list[i].is_dropped ? self->list[i].estimate.size : 0;
+    }
+    return sum;
+}
+
 /* What is dropped of the same effect already, one step down of two; NULL: nothing. */
 static change *dropped_before(advice *self, const change *one)
 {
@@ -436,8 +445,8 @@ static int drop(advice *self, change **order)
             one->reason = "more of the effect is dropped";
             continue;
         }
-        const double sum = self->bound + one->estimate.size - (before != NULL ? before->estimate.size : 0);
-        if (sum > self->tolerance) {
+        const double replaced = before != NULL ? before->estimate.size : 0;
+        if (bound_of(self) + one->estimate.size - replaced > self->tolerance) {
             one->reason = "together with the others it would change too much";
             continue;
         }
@@ -445,7 +454,6 @@ static int drop(advice *self, change **order)
             before->is_dropped = false;
             before->reason = "more of the effect is dropped";
         }
-        self->bound = sum;
         one->is_dropped = true;
         one->reason = "changes little";
         order[dropped++] = one;
@@ -478,13 +486,11 @@ static void choose(advice *self)
         }
         last->is_dropped = false;
         last->reason = "verification refused to drop it";
-        self->bound -= last->estimate.size;
         self->taken_back++;
         for (int i = dropped - 1; i >= 0 && dropped_before(self, last) == NULL; i--) {
             if (strcmp(order[i]->key.field.name, last->key.field.name) == 0) { /* what it had replaced */
                 order[i]->is_dropped = true;
                 order[i]->reason = "changes little";
-                self->bound += order[i]->estimate.size;
             }
         }
     }
@@ -495,7 +501,7 @@ static void choose(advice *self)
         }
     }
     self->refusal = self->is_certified ? NULL : "steps half as long change even the full run by more";
-    self->bound = self->is_certified ? fmax(self->bound, 0) : (double)NAN;
+    self->bound = self->is_certified ? bound_of(self) : (double)NAN;
 }
 
 mct_scene advise_pruned_scene(const advice *self)
