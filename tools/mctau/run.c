@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "mctau/supervisor.h"
@@ -109,14 +108,6 @@ static void watch_signals(void)
 }
 
 /* --- what a run may overwrite --- */
-
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat there[2];
-    return a != NULL && b != NULL && stat(a, &there[0]) == 0 && stat(b, &there[1]) == 0 &&
-           S_ISREG(there[0].st_mode) && there[0].st_dev == there[1].st_dev &&
-           there[0].st_ino == there[1].st_ino;
-}
 
 static int check_outputs(const scene_file *file, const run_options *run)
 {

@@ -6,6 +6,7 @@
 #include "mctau/input.h"
 #include "mctau/judge.h"
 #include "mctau/plant.h"
+#include "runner_advise.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
 #include "runner_ledger.h"
@@ -136,4 +137,7 @@ const mct_runner MCT_RUNNER = {
     .ledger_tick = ledger_tick,
     .ledger_end = ledger_end,
     .try = runner_try,
+    .loop = runner_loop,
+    .depart = runner_depart,
+    .time_scale = runner_time_scale,
 };

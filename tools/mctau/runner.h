@@ -189,6 +189,21 @@ typedef struct {
     double instructions; /* per tick; NaN where nothing counts them */
 } trial;
 
+/* A run that is known. */
+typedef struct {
+    const double *inputs; /* one a tick; NULL: none acts */
+    const double *states; /* as of a trial */
+    int width;            /* of its rows: states of the scene that was run */
+    uint64_t ticks;
+} course;
+
+/* Where two runs differ most, as a part of the state's scale. */
+typedef struct {
+    double size; /* infinite: one of them diverges; NaN: not known */
+    int state;
+    uint64_t tick;
+} departure;
+
 typedef struct {
     const char *precision;
     size_t real_size;
@@ -213,6 +228,20 @@ typedef struct {
     void (*ledger_end)(ledger *self, ledger_result *result);
     /* Follows, times and counts, as the trial asks; the scene's controller and [input] do not act. */
     mct_status (*try)(const mct_scene *scene, trial *asked, mct_message *why);
+    /* Follows a scene with a controller in simulation, in lockstep; `states` and `diverged` as of a trial. */
+    mct_status (*loop)(const mct_scene *scene, uint64_t ticks, double *states, bool *diverged,
+                       mct_message *why);
+    /*
+     * Open loop, to first order: by how much other scenes of the system depart from the run of `scene`, at its inputs.
+     * Compared are coordinates and rates, by their `scale`. found[i] is not known where others[i] cannot be prepared.
+     */
+    mct_status (*depart)(const mct_scene *scene, const course *along, const double *scale,
+                         const mct_scene *others, int count, departure *found, mct_message *why);
+    /*
+     * Of what `with` has and `without` has not [s]: of a current L/R; of a prescribed motion 1 / its angular frequency;
+     * else by how the accelerations that it brings respond to the state. NaN where it has none.
+     */
+    double (*time_scale)(const mct_scene *with, const mct_scene *without, const course *along);
 } mct_runner;
 
 extern const mct_runner mct_runner_f64;
