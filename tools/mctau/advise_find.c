@@ -382,9 +382,16 @@ static void estimate_all(advice *self)
             keep(&self->list[i], "the scene's stepper needs it");
         }
     }
+    /* A factor, as a ratio of two frictions, is not 0 and says nothing by itself: what would change nothing is not told. */
+    int count = 0;
     for (int i = 0; i < self->left_out_count; i++) {
-        estimate_beside(self, &self->left_out[i]);
+        change one = self->left_out[i];
+        estimate_beside(self, &one);
+        if (one.is_fixed || one.estimate.size != 0) {
+            self->left_out[count++] = one;
+        }
     }
+    self->left_out_count = count;
 }
 
 /* --- the choice --- */
