@@ -9,8 +9,7 @@ const mct_effect mct_effects[MCT_EFFECT_COUNT] = {
     {"viscous", "friction proportional to a coordinate's rate", MCT_VISCOUS, NULL, {0, MCT_VISCOUS, 0}, true},
     {"coulomb",
      "dry friction of constant size, with sticking; moreau: by an impulse a step; exact: starts and stops "
-     "are located "
-     "within the step",
+     "are located within the step, by a series",
      MCT_COULOMB,
      coulomb_choices,
      {0, MCT_COULOMB_MOREAU, MCT_COULOMB_EXACT},
