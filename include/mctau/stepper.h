@@ -30,8 +30,9 @@ typedef struct {
     const char *doc; /**< scheme, role, cost */
     /** Largest h R/L at which the scheme follows an inductive motor; 0 when any will do. */
     double motor_stability_limit;
-    bool needs_smooth; /**< no kernel where an effect has a kink: coulomb, drag */
-    bool is_special;   /**< for scenes that name it: never chosen for one that leaves its stepper out */
+    bool
+        needs_smooth; /**< no kernel where an effect has a kink: coulomb by Moreau, drag without exact coulomb */
+    bool is_special; /**< for scenes that name it: never chosen for one that leaves its stepper out */
 } mct_stepper;
 
 /** All steppers, by the enumeration above. */

@@ -16,8 +16,10 @@ const mct_stepper mct_steppers[MCT_STEPPER_COUNT] = {
                           "Kahan's leapfrog, exactly symmetric, the motor's current averaged over the step",
                           0, false, false},
     [MCT_STEPPER_RK4] = {"rk4", 4, "classical Runge-Kutta: the generic default", 2.785, false, false},
-    [MCT_STEPPER_TAYLOR4] = {"taylor4", 4, "Taylor's method, order 4: one sine a step at any order", 2.785,
-                             true, true},
+    [MCT_STEPPER_TAYLOR4] =
+        {"taylor4", 4,
+         "Taylor's method, order 4: one sine a step at any order; these find exact dry friction", 2.785, true,
+         true},
     [MCT_STEPPER_TAYLOR6] = {"taylor6", 6, "Taylor's method, order 6: exact to rounding at 1 kHz", 3.553,
                              true, true},
     [MCT_STEPPER_TAYLOR8] = {"taylor8", 8, "Taylor's method, order 8", 4.313, true, true},

@@ -4,13 +4,14 @@
  * Equation      M(q) a + C(q,v) v = tau,  q = (p, th),  v = (pd, thd):
  *                   [ m1 + m2      m2 l cos th ]       [ -m2 l thd^2 sin th ]       [ f - k1 pd             ]
  *               M = [ m2 l cos th  m2 l^2      ]  Cv = [  0                 ] tau = [ m2 g l sin th - k2 thd]
+ *               Friction adds - c v |v| and dry friction to each row of tau.
  *               det M = m2 l^2 (m1 + m2 sin^2 th), never taken as a difference.
  *               With a motor f = force_per_ampere i (src/effects/motor.h) through a gear of ratio N and a
  *               pulley of radius rho: the motor turns N / rho times as fast as the cart moves.
  * Source        section 2.4, eqs. 115-132.
  * Conventions   p to the right; th clockwise from the upward vertical, zero is the unstable equilibrium.
  * Differences   (125), (129), (132) have an entry -m2 l^2 that is not there; (126), (130) lack l; (131) has m
- *               for m2. Motor, dry friction and saturation are ours. k2 is a couple between pole and cart.
+ *               for m2. Motor, dry friction, drag and saturation are ours. k2 is a couple between pole and cart.
  * Constraint    cart: the track; pole: the rod, e = m2 xdd - (0, -m2 g, 0), which also transmits the couple
  *               k2.
  * Validity      rod and track rigid; any m1, m2, l > 0. A cart much lighter than the pole makes the motion

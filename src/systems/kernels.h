@@ -28,7 +28,7 @@
     MCT_DRY_SETS(each, __VA_ARGS__)    \
     each(__VA_ARGS__, 64, 65, 66, 67)  \
     each(__VA_ARGS__, 68, 69, 70, 71)
-#define MCT_SERIES_SETS(each, ...)                 \
+#define MCT_EXACT_SETS(each, ...)                 \
     MCT_SMOOTH_SETS(each, __VA_ARGS__)             \
     each(__VA_ARGS__, 65536, 65537, 65538, 65539)  \
     each(__VA_ARGS__, 65600, 65601, 65602, 65603)
@@ -238,8 +238,14 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
     MCT_TAYLOR_OF_ORDER(KERNELS, 6, __VA_ARGS__) \
     MCT_TAYLOR_OF_ORDER(KERNELS, 8, __VA_ARGS__) \
     MCT_TAYLOR_OF_ORDER(KERNELS, 12, __VA_ARGS__)
-#define MCT_TAYLOR_MOTOR_KERNELS(remainder) MCT_TAYLOR(MCT_SERIES_KERNELS, remainder)
-#define MCT_SERIES_KERNELS(...)             MCT_STEPPER_KERNELS(MCT_SERIES_SETS, __VA_ARGS__)
+/* Of a system with a motor; exact dry friction by one order alone, for these kernels are large. */
+#define MCT_TAYLOR_MOTOR_KERNELS(remainder)                        \
+    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 4, remainder)    \
+    MCT_TAYLOR_OF_ORDER(MCT_EXACT_MOTOR_KERNELS, 6, remainder)     \
+    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 8, remainder)    \
+    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 12, remainder)
+#define MCT_SMOOTH_MOTOR_KERNELS(...) MCT_STEPPER_KERNELS(MCT_SMOOTH_SETS, __VA_ARGS__)
+#define MCT_EXACT_MOTOR_KERNELS(...)  MCT_STEPPER_KERNELS(MCT_EXACT_SETS, __VA_ARGS__)
 #define MCT_TAYLOR_EXACT(...)               MCT_TAYLOR(MCT_EXACT_KERNELS, __VA_ARGS__)
 #define MCT_TAYLOR_EXACT_DRAG(...)          MCT_TAYLOR(MCT_EXACT_DRAG_KERNELS, __VA_ARGS__)
 #define MCT_TAYLOR_KERNELS_2(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_2, __VA_ARGS__)

@@ -12,7 +12,7 @@
  *               sums of m l and m l^2 of the arm.
  * Differences   I_w is a parameter: the source's wheel is a hoop, I_w = m_w r^2 (140). The sign of (147) is
  *               wrong in the source, but a balanced wheel has C = 0. (168) lacks an entry. Inductance, dry
- *               friction, saturation: ours.
+ *               friction, drag (- c v |v| in each row), saturation: ours.
  * Constraint    The arm stands for two particles at +-a with its S_a and I_a, the wheel for two opposite ones
  *               on its hoop; e = m xdd - m (0, -g, 0) also transmits the couples (motor, friction).
  * Validity      arm and wheel rigid, the wheel balanced; J, I_w > 0. M is constant: its condition is about

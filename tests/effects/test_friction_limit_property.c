@@ -15,8 +15,8 @@
 
 enum { CASES = 120, TICKS = 400 };
 
-static const char *const systems[] = {"cart_pole",     "reaction_wheel", "pendulum", "particle_pendulum", "fixed_axis",
-                                      "solid_pendulum"};
+static const char *const systems[] = {"cart_pole",         "reaction_wheel", "pendulum",
+                                      "particle_pendulum", "fixed_axis",     "solid_pendulum"};
 
 void setUp(void)
 {
@@ -46,7 +46,8 @@ static void set(mct_scene *scene, const char *name, double value)
     }
 }
 
-static void run(mct_scene scene, int stepper, uint32_t coulomb, int substeps, const double *input, mct_plant *plant)
+static void run(mct_scene scene, int stepper, uint32_t coulomb, int substeps, const double *input,
+                mct_plant *plant)
 {
     scene.stepper = stepper;
     scene.effects |= coulomb;
@@ -70,7 +71,8 @@ static void test_exact_friction_is_the_limit_of_moreaus(void)
         const int system = system_called(systems[k % 6]);
         const uint32_t drag = (k / 6) % 2 ? MCT_DRAG & mct_systems[system]->effects : 0;
         mct_scene scene = scene_of(system, MCT_STEPPER_LEAP, MCT_GRAVITY | MCT_VISCOUS | drag);
-        const bool heavy = strcmp(systems[k % 6], "fixed_axis") == 0 || strcmp(systems[k % 6], "solid_pendulum") == 0;
+        const bool heavy =
+            strcmp(systems[k % 6], "fixed_axis") == 0 || strcmp(systems[k % 6], "solid_pendulum") == 0;
         const double size = heavy ? 5 : 0.1; /* of couples */
         set(&scene, "coulomb", size * random_scale(&random, 0.1, 1));
         set(&scene, "cart_coulomb", random_scale(&random, 0.3, 3));
@@ -88,7 +90,9 @@ static void test_exact_friction_is_the_limit_of_moreaus(void)
             scene.initial[i] = random_in(&random, -2, 2);
         }
         for (int i = 0; i < 4; i++) {
-            input[i] = random_in(&random, -1, 1) * (system == CART_POLE ? 4 : system == REACTION_WHEEL ? 0.01 : size);
+            input[i] = random_in(&random, -1, 1) * (system == CART_POLE        ? 4
+                                                    : system == REACTION_WHEEL ? 0.01
+                                                                               : size);
         }
         mct_plant exact, moreau, finer;
         run(scene, MCT_STEPPER_TAYLOR8, MCT_COULOMB_EXACT, 1, input, &exact);
