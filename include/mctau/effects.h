@@ -37,6 +37,7 @@ enum {
 #define MCT_MOTOR          (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
 #define MCT_COULOMB        (MCT_COULOMB_MOREAU | MCT_COULOMB_EXACT)
 #define MCT_SATURATION     (MCT_SATURATION_VOLTAGE | MCT_SATURATION_CURRENT)
+#define MCT_POTENTIAL      (MCT_GRAVITY | MCT_SPRING | MCT_BUOYANCY) /**< what has a potential energy */
 #define MCT_KERNEL_EFFECTS (~(uint32_t)MCT_SATURATION)
 
 /**
@@ -52,7 +53,25 @@ typedef struct {
     bool is_switch;             /**< false and true may stand for the first two choices */
 } mct_effect;
 
-#define MCT_EFFECT_COUNT 15
+/** Place of an effect in mct_effects. */
+enum {
+    MCT_EFFECT_GRAVITY,
+    MCT_EFFECT_VISCOUS,
+    MCT_EFFECT_COULOMB,
+    MCT_EFFECT_MOTOR,
+    MCT_EFFECT_SATURATION,
+    MCT_EFFECT_DRAG,
+    MCT_EFFECT_SPRING,
+    MCT_EFFECT_BASE_MOTION,
+    MCT_EFFECT_CENTRIFUGAL,
+    MCT_EFFECT_CORIOLIS,
+    MCT_EFFECT_EULER,
+    MCT_EFFECT_STOKES,
+    MCT_EFFECT_BUOYANCY,
+    MCT_EFFECT_FORCING,
+    MCT_EFFECT_FORCES,
+    MCT_EFFECT_COUNT
+};
 /** All effects, in the order in which they are listed. */
 extern const mct_effect mct_effects[MCT_EFFECT_COUNT];
 

@@ -35,7 +35,7 @@ typedef struct {
     mct_real M[MCT_MAX_COORDINATES][MCT_MAX_COORDINATES]; /**< mass matrix, symmetric positive definite */
     mct_real position[MCT_MAX_PARTICLES][3];              /**< of each particle [m] */
     mct_real mass[MCT_MAX_PARTICLES];                     /**< [kg] */
-    mct_real potential_energy; /**< gravity's, zero at the height of the pivot, and that of springs [J] */
+    mct_real potential_energy; /**< of MCT_POTENTIAL, gravity's zero at the height of the pivot [J] */
     /* of position and velocity */
     mct_real C[MCT_MAX_COORDINATES][MCT_MAX_COORDINATES]; /**< m J' Jdot; only C v is unique */
     mct_real Cv[MCT_MAX_COORDINATES];
@@ -47,12 +47,20 @@ typedef struct {
     mct_real current;                                /**< of the motor [A] */
     mct_real force[MCT_MAX_PARTICLES][3];            /**< f on each particle from outside [N] */
     mct_real constraint_force[MCT_MAX_PARTICLES][3]; /**< e = m xdd - f [N] */
-    mct_real power_input;      /**< of the force or torque, or V i of the motor's terminals [W] */
-    mct_real power_viscous;    /**< at most 0 [W] */
-    mct_real power_coulomb;    /**< at most 0 [W] */
-    mct_real power_resistance; /**< - R i^2 [W] */
-    mct_real power_conversion; /**< (k_T - k_b) i w: 0 where the motor's constants agree [W] */
-    mct_real power_base;       /**< of a base that moves as prescribed, through the constraints [W] */
+    /*
+     * Powers [W]. Kinetic energy changes by the sum of power[], power_frame and, without a motor, power_input. The motor
+     * takes power_input in: + power_resistance + power_conversion - power[MCT_EFFECT_MOTOR] is the rate of its magnetic
+     * energy.
+     */
+    mct_real power
+        [MCT_EFFECT_COUNT]; /**< that each effect brings into kinetic energy; 0 of one that is off. At most 0
+                                           of viscous, stokes and drag, and of coulomb unless a belt drives */
+    mct_real power_input;   /**< of the force or torque, or V i of the motor's terminals */
+    mct_real power_resistance; /**< - R i^2 */
+    mct_real power_conversion; /**< (k_T - k_b) i w: 0 where the motor's constants agree */
+    mct_real
+        power_frame; /**< of a rotating frame: what its apparent forces, which are booked as they work in the
+                               frame, do not do in space */
 } mct_evaluation;
 
 /**

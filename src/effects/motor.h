@@ -86,6 +86,7 @@ static inline void mct_motor_powers(const mct_motor *motor, uint32_t effects, mc
     }
     const mct_real i = out->current;
     out->power_input = u * i;
+    out->power[MCT_EFFECT_MOTOR] = motor->force_per_ampere * i * rate;
     out->power_resistance = -motor->resistance * i * i;
     out->power_conversion = (motor->force_per_ampere - motor->emf) * i * rate;
     if (effects & MCT_MOTOR_INDUCTIVE) {

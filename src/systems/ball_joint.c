@@ -291,13 +291,14 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     mct_cross(w, momentum, out->Cv);
     mct_rotate(own, k->first_moment, center);
     mct_cross(center, k->gravity, out->tau);
+    out->power[MCT_EFFECT_GRAVITY] = mct_dot(out->tau, w);
     mct_rotate(x + Q, rotor->idle_axis, axis);
     const mct_real damping = mct_damping(effects, rotor->viscous, 0, w, &slope);
     const mct_real idle = mct_dot(axis, w);
     for (int i = 0; i < 3; i++) {
         const mct_real friction_torque = -damping * (w[i] - idle * axis[i]);
         out->tau[i] += friction_torque;
-        out->power_viscous += friction_torque * w[i];
+        out->power[MCT_EFFECT_VISCOUS] += friction_torque * w[i];
     }
     out->kinetic_energy = MCT_R(0.5) * mct_dot(w, momentum);
     out->potential_energy = 0 - mct_dot(center, k->gravity); /* not -0 */

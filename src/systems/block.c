@@ -382,14 +382,14 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real position = x[0];
     const mct_real v = x[1];
     const mct_real relative = v - k->belt_speed;
-    mct_real outer = u; /* force from outside */
+    mct_real forcing = 0;
     *out = (mct_evaluation){0};
     if (effects & MCT_FORCING) {
         mct_real s, c;
         mct_sincos(x[PHASE], &s, &c);
-        outer += prescribed(k, s, x[TIME]);
+        forcing = prescribed(k, s, x[TIME]);
     }
-    const mct_real smooth = steady(k, effects, position, outer);
+    const mct_real smooth = steady(k, effects, position, u + forcing);
     mct_real dry = 0;
     if (!is_at_rest(k, relative)) {
         dry = -sign_of(relative) * k->dynamic_friction;
@@ -411,8 +411,11 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->constraint_force[0][1] = k->weight * k->cosine * k->cosine;
     out->kinetic_energy = MCT_R(0.5) * k->mass * v * v;
     out->potential_energy = -k->weight_along * position + MCT_R(0.5) * k->spring * position * position;
-    out->power_input = outer * v + dry * k->belt_speed; /* of the hand, and of the belt */
-    out->power_coulomb = dry * relative;
+    out->power_input = u * v;
+    out->power[MCT_EFFECT_GRAVITY] = k->weight_along * v;
+    out->power[MCT_EFFECT_SPRING] = -k->spring * position * v;
+    out->power[MCT_EFFECT_FORCING] = forcing * v;
+    out->power[MCT_EFFECT_COULOMB] = dry * v; /* the belt's dry belt_speed, less the heat -dry relative */
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,

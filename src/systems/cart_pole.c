@@ -80,8 +80,7 @@ static const mct_field parameters[PARAMETERS] = {
     [BACK_EMF_CONSTANT] = MCT_COEFFICIENT(MCT_MOTOR, "back_emf_constant", "V s/rad", 0, 1e4, 0.00767,
                                           "motor voltage per speed"),
     [RESISTANCE] = MCT_COEFFICIENT(MCT_MOTOR, "resistance", "ohm", 0, 1e6, 2.6, "armature"),
-    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.00018,
-                                   "armature; read by motor = \"inductive\""),
+    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.00018, "armature"),
     [GEAR_RATIO] =
         MCT_COEFFICIENT(MCT_MOTOR, "gear_ratio", "", 1e-3, 1e4, 3.71, "motor turns per pulley turn"),
     [PULLEY_RADIUS] = MCT_COEFFICIENT(MCT_MOTOR, "pulley_radius", "m", 1e-5, 1e3, 0.00635,
@@ -89,7 +88,7 @@ static const mct_field parameters[PARAMETERS] = {
     [SUPPLY_VOLTAGE] =
         MCT_COEFFICIENT(MCT_MOTOR, "supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
     [CURRENT_LIMIT] = MCT_COEFFICIENT(MCT_SATURATION_CURRENT, "current_limit", "A", 1e-6, 1e4, 3,
-                                      "of the drive, either way; read by saturation = \"current\""),
+                                      "of the drive, either way"),
 };
 
 static const mct_coordinate coordinates[2] = {
@@ -466,17 +465,34 @@ static mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
                           {inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia}};
 }
 
-/* Moreau's friction at the middle of a step; `angle` is one near it, whose sine and cosine the stepper has taken. */
-MCT_INLINE void slide(const constants_t *k, unsigned effects, mct_real angle, const mct_real *x, mct_real *dx)
+/*
+ * Moreau's friction, with the matrix where the pole would be after half a step at its rate: that is the middle of the step
+ * up to h^2, and known before the step is. s, c: there.
+ */
+MCT_INLINE void slide(const constants_t *k, unsigned effects, mct_real s, mct_real c, const mct_real *x,
+                      mct_real *dx)
 {
-    if (!(effects & MCT_COULOMB_MOREAU)) {
-        return;
+    if (effects & MCT_COULOMB_MOREAU) {
+        mct_friction_correct(inertia_at(k, s, c), k->coulomb, k->hold, k->step.h, x + 2, dx);
     }
-    const mct_real middle = x[1] + MCT_R(0.5) * dx[1];
+}
+
+/* From the sine at the start, which the stepper has taken, too; */
+MCT_INLINE void slide_from_start(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+{
+    const mct_real turned = k->step.half * x[3];
     mct_real s0, c0, s, c;
-    mct_sincos(angle, &s0, &c0);
-    mct_sincos_near(middle, middle - angle, s0, c0, &s, &c);
-    mct_friction_correct(inertia_at(k, s, c), k->coulomb, k->hold, k->step.h, x + 2, dx);
+    mct_sincos(x[1], &s0, &c0);
+    mct_sincos_near(x[1] + turned, turned, s0, c0, &s, &c);
+    slide(k, effects, s, c, x, dx);
+}
+
+/* and `leap`, which has taken that of the middle. */
+MCT_INLINE void slide_from_middle(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
+{
+    mct_real s, c;
+    mct_sincos(x[1] + k->step.half * x[3], &s, &c);
+    slide(k, effects, s, c, x, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -507,7 +523,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     const mct_real smooth[2] = {drive + cart_viscous + cart_drag - out->Cv[0],
                                 k->weight_moment * s + pole_viscous + pole_drag};
     mct_real dry[2];
-    mct_friction_force(inertia_at(k, s, c), k->coulomb, k->hold, x + 2, smooth, dry);
+    const mct_inertia2 inertia = inertia_at(k, s, c);
+    mct_friction_force(&inertia, k->coulomb, k->hold, x + 2, smooth, dry);
     solve(k, MCT_KERNEL_EFFECTS, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
     out->tau[0] = drive + cart_viscous + cart_drag + dry[0];
     out->tau[1] = k->weight_moment * s + pole_viscous + pole_drag + dry[1];
@@ -532,8 +549,10 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy =
         MCT_R(0.5) * (k->total_mass * pd * pd + k->inertia * thd * thd) + k->moment * c * pd * thd;
     out->potential_energy = k->weight_moment * c;
-    out->power_viscous = (cart_viscous + cart_drag) * pd + (pole_viscous + pole_drag) * thd;
-    out->power_coulomb = dry[0] * pd + dry[1] * thd;
+    out->power[MCT_EFFECT_GRAVITY] = k->weight_moment * s * thd;
+    out->power[MCT_EFFECT_VISCOUS] = cart_viscous * pd + pole_viscous * thd;
+    out->power[MCT_EFFECT_DRAG] = cart_drag * pd + pole_drag * thd;
+    out->power[MCT_EFFECT_COULOMB] = dry[0] * pd + dry[1] * thd;
     mct_motor_powers(&k->motor, effects, u, pd, out);
 }
 
@@ -599,16 +618,17 @@ static void linearise(const struct mct_scene *scene, mct_linear_model *model)
 #define friction mct_no_friction /* the steppers here see to it, which know a sine near the middle */
 
 MCT_STEPPER_KERNELS(MCT_ALL_SETS, seed, k->step.remainder,
-                    (mct_seed(derivative, k, k->step, effects, 2, x, u, dx), slide(k, effects, x[1], x, dx)))
+                    (mct_seed(derivative, k, k->step, effects, 2, x, u, dx),
+                     slide_from_start(k, effects, x, dx)))
 MCT_STEPPER_KERNELS(MCT_ALL_SETS, euler, k->step.remainder,
                     (mct_euler(kick_implicit, k, k->step, effects, 2, x, u, dx),
-                     slide(k, effects, x[1], x, dx)))
+                     slide_from_start(k, effects, x, dx)))
 MCT_STEPPER_KERNELS(MCT_ALL_SETS, leap, k->step.remainder,
                     (mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx),
-                     slide(k, effects, x[1] + k->step.half * x[3], x, dx)))
+                     slide_from_middle(k, effects, x, dx)))
 MCT_STEPPER_KERNELS(MCT_ALL_SETS, rk4, k->step.sixth_remainder,
                     (mct_rk4(derivative_at, 1, k, k->step, effects, 2, x, u, dx),
-                     slide(k, effects, x[1], x, dx)))
+                     slide_from_start(k, effects, x, dx)))
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 
 static mct_kernel kernel(int stepper, uint32_t effects)

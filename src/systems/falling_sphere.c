@@ -279,7 +279,10 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy = MCT_R(0.5) * k->mass * v * v;
     out->potential_energy = (k->weight - k->lift) * x[0];
     out->power_input = u * v;
-    out->power_viscous = -k->mass * (k->stokes + k->drag * size_of(v)) * v * v;
+    out->power[MCT_EFFECT_GRAVITY] = -k->weight * v;
+    out->power[MCT_EFFECT_BUOYANCY] = k->lift * v;
+    out->power[MCT_EFFECT_STOKES] = -k->mass * k->stokes * v * v;
+    out->power[MCT_EFFECT_DRAG] = -k->mass * k->drag * size_of(v) * v * v;
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,

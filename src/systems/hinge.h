@@ -227,8 +227,10 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
     out->kinetic_energy = MCT_R(0.5) * k->inertia * w * w;
     out->potential_energy = k->sine_moment * c - k->cosine_moment * s;
     out->power_input = u * w;
-    out->power_viscous = -k->viscous * w * w - k->drag * mct_hinge_size(w) * w * w;
-    out->power_coulomb = dry * w;
+    out->power[MCT_EFFECT_GRAVITY] = (k->sine_moment * s + k->cosine_moment * c) * w;
+    out->power[MCT_EFFECT_VISCOUS] = -k->viscous * w * w;
+    out->power[MCT_EFFECT_DRAG] = -k->drag * mct_hinge_size(w) * w * w;
+    out->power[MCT_EFFECT_COULOMB] = dry * w;
 }
 
 /* The kernels, and kernel() of the descriptor: by kernels.h's macros for any stepper and for series, and the first

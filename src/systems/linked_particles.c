@@ -119,7 +119,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
         out->constraint_force[1][i] = 0 - k->force[1][i];
     }
     out->kinetic_energy = MCT_R(0.5) * k->total_mass * v * v;
-    out->power_input = out->tau[0] * v; /* of the forces, too: they are given from outside */
+    out->power_input = u * v;
+    out->power[MCT_EFFECT_FORCES] = (k->force[0][0] + k->force[1][0]) * v;
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,

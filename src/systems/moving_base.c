@@ -11,8 +11,8 @@
  * Differences   (175): - m Jdot thd; (179): Jdot = l thd (-sin, -cos, 0); (185), (186): gravity is m g l sin
  *               th, and the base's term - m l [cos, -sin, 0] udd, a row; the printed one is a matrix without
  *               m l.
- * Constraint    rod and base, e = m xdd - (0, -m g, 0). The base does work through it: e . ud, the
- *               `power_base`.
+ * Constraint    rod and base, e = m xdd - (0, -m g, 0). The base does work through it: e . ud, the power of
+ *               base_motion.
  * Validity      rod and base rigid; any m, l > 0; the base completes at most half an oscillation in a step.
  *
  * Time          A kernel gets none. The clock is two angles, f_1 t and f_2 t, which are states behind the
@@ -335,8 +335,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy = MCT_R(0.5) * k->mass * (velocity[0] * velocity[0] + velocity[1] * velocity[1]);
     out->potential_energy = k->mass * k->gravity * out->position[0][1];
     out->power_input = u * w;
-    out->power_viscous = -k->viscous * w * w;
-    out->power_base = e[0] * u_v[0] + e[1] * u_v[1];
+    out->power[MCT_EFFECT_GRAVITY] = -k->mass * k->gravity * velocity[1];
+    out->power[MCT_EFFECT_VISCOUS] = -k->viscous * w * w;
+    out->power[MCT_EFFECT_BASE_MOTION] = e[0] * u_v[0] + e[1] * u_v[1];
 }
 
 /* In seconds since the phases were 0. */

@@ -87,12 +87,11 @@ static const mct_field parameters[PARAMETERS] = {
     [BACK_EMF_CONSTANT] =
         MCT_COEFFICIENT(MCT_MOTOR, "back_emf_constant", "V s/rad", 0, 1e4, 0.0274, "motor voltage per speed"),
     [RESISTANCE] = MCT_COEFFICIENT(MCT_MOTOR, "resistance", "ohm", 0, 1e6, 12.1, "armature"),
-    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.006,
-                                   "armature; read by motor = \"inductive\""),
+    [INDUCTANCE] = MCT_COEFFICIENT(MCT_MOTOR_INDUCTIVE, "inductance", "H", 0, 1e3, 0.006, "armature"),
     [SUPPLY_VOLTAGE] =
         MCT_COEFFICIENT(MCT_MOTOR, "supply_voltage", "V", 1e-3, 1e4, 10, "largest voltage either way"),
     [CURRENT_LIMIT] = MCT_COEFFICIENT(MCT_SATURATION_CURRENT, "current_limit", "A", 1e-6, 1e4, 0.6,
-                                      "of the drive, either way; read by saturation = \"current\""),
+                                      "of the drive, either way"),
 };
 
 static const mct_coordinate coordinates[2] = {
@@ -461,8 +460,7 @@ static void motion(const void *constants, uint32_t effects, const mct_state *sta
     mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
 }
 
-static inline void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u,
-                            mct_real *dx)
+MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
     (void)effects;
     (void)u;
@@ -490,12 +488,12 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
             (effects & MCT_MOTOR_INDUCTIVE) ? x[4] : mct_motor_quasi_static_current(&k->motor, u, wheel_rate);
         drive = k->motor.force_per_ampere * out->current;
     }
-    const mct_real arm_damping = k->arm_viscous + drag_of(k, 0, arm_rate);
-    const mct_real wheel_damping = k->wheel_viscous + drag_of(k, 1, wheel_rate);
-    const mct_real smooth[2] = {k->weight_moment * s - arm_damping * arm_rate,
-                                drive - wheel_damping * wheel_rate};
+    const mct_real arm_drag = drag_of(k, 0, arm_rate);
+    const mct_real wheel_drag = drag_of(k, 1, wheel_rate);
+    const mct_real smooth[2] = {k->weight_moment * s - (k->arm_viscous + arm_drag) * arm_rate,
+                                drive - (k->wheel_viscous + wheel_drag) * wheel_rate};
     mct_real dry[2];
-    mct_friction_force(k->inertia, k->coulomb, k->hold, x + 2, smooth, dry);
+    mct_friction_force(&k->inertia, k->coulomb, k->hold, x + 2, smooth, dry);
     out->tau[0] = smooth[0] + dry[0];
     out->tau[1] = smooth[1] + dry[1];
     out->acceleration[0] = (out->tau[0] - out->tau[1]) * k->inverse_arm;
@@ -524,8 +522,11 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy =
         MCT_R(0.5) * (k->arm_inertia * arm_rate * arm_rate + k->wheel_inertia * rim_rate * rim_rate);
     out->potential_energy = k->weight_moment * c;
-    out->power_viscous = -(arm_damping * arm_rate * arm_rate + wheel_damping * wheel_rate * wheel_rate);
-    out->power_coulomb = dry[0] * arm_rate + dry[1] * wheel_rate;
+    out->power[MCT_EFFECT_GRAVITY] = k->weight_moment * s * arm_rate;
+    out->power[MCT_EFFECT_VISCOUS] =
+        -(k->arm_viscous * arm_rate * arm_rate + k->wheel_viscous * wheel_rate * wheel_rate);
+    out->power[MCT_EFFECT_DRAG] = -(arm_drag * arm_rate * arm_rate + wheel_drag * wheel_rate * wheel_rate);
+    out->power[MCT_EFFECT_COULOMB] = dry[0] * arm_rate + dry[1] * wheel_rate;
     mct_motor_powers(&k->motor, effects, u, wheel_rate, out);
 }
 

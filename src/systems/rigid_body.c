@@ -687,8 +687,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     evaluate_particles(k, x, out);
     out->kinetic_energy = MCT_R(0.5) * (mass * mct_dot(v, v) + mct_dot(w, momentum));
     out->potential_energy = 0 - mass * mct_dot(k->gravity, x); /* not -0 */
-    out->power_input = mct_dot(force, v) + mct_dot(couple, w);
-    out->power_viscous = -drag * mct_dot(v, v) - angular_drag * mct_dot(w, w);
+    out->power[MCT_EFFECT_GRAVITY] = mass * mct_dot(k->gravity, v);
+    out->power[MCT_EFFECT_FORCES] = mct_dot(force, v) + mct_dot(couple, w);
+    out->power[MCT_EFFECT_DRAG] = -drag * mct_dot(v, v) - angular_drag * mct_dot(w, w);
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,

@@ -15,7 +15,9 @@
  * Differences   (277)-(287) take the rate of u for the angular velocity, right for a u of fixed direction alone;
  *               the Euler force below (286) lacks the factor m. Drag and weight are ours.
  * Constraint    none that a force would keep: e = m xdd - f is 0. With an apparent force left out, e is what would have
- *               to act on the mass for it to move like that, and its power is power_base.
+ *               to act on the mass for it to move like that.
+ * Energies      are those in space, where apparent forces do no work. Their powers are those in the frame, where Coriolis'
+ *               has none; power_frame is what the power of e leaves of them.
  * State         the time is kept in x[6] (MCT_TIMED).
  * Validity      any rotation; in single precision the frame's angle is known to 6e-8 of itself.
  */
@@ -422,8 +424,16 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy = MCT_R(0.5) * k->mass * mct_dot(z, z);
     out->potential_energy = -weight[1] * out->position[0][1];
     out->power_input = mct_dot(force, z);
-    out->power_viscous = -k->mass * drag_rate * mct_dot(z, z);
-    out->power_base = mct_dot(missing, z);
+    out->power[MCT_EFFECT_GRAVITY] = weight[1] * space[1];
+    out->power[MCT_EFFECT_DRAG] = -k->mass * drag_rate * mct_dot(z, z);
+    if (effects & MCT_CENTRIFUGAL) {
+        out->power[MCT_EFFECT_CENTRIFUGAL] = -k->mass * mct_dot(centrifugal, x + N);
+    }
+    if (effects & MCT_EULER_FORCE) {
+        out->power[MCT_EFFECT_EULER] = -k->mass * mct_dot(euler, x + N);
+    }
+    out->power_frame =
+        mct_dot(missing, z) - (out->power[MCT_EFFECT_CENTRIFUGAL] + out->power[MCT_EFFECT_EULER]);
 }
 
 static mct_hyperdual product(mct_hyperdual a, mct_hyperdual b)

@@ -684,7 +684,9 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     out->kinetic_energy = MCT_R(0.5) * m * (rd * rd + r * r * w * w);
     out->potential_energy = m * k->gravity * r * s + MCT_R(0.5) * k->stiffness * stretch * stretch;
     out->power_input = u * w;
-    out->power_viscous = -k->length_viscous * rd * rd - k->angle_viscous * w * w;
+    out->power[MCT_EFFECT_GRAVITY] = -m * k->gravity * (s * rd + r * c * w);
+    out->power[MCT_EFFECT_SPRING] = -k->stiffness * stretch * rd;
+    out->power[MCT_EFFECT_VISCOUS] = -k->length_viscous * rd * rd - k->angle_viscous * w * w;
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,

@@ -93,8 +93,8 @@ static uint64_t with_evaluation(uint64_t hash, const mct_scene *scene, const mct
     hash = with_real(hash, at->current);
     hash = with_reals(hash, &at->constraint_force[0][0], 3 * particles);
     hash = with_real(hash, at->power_input);
-    hash = with_real(hash, at->power_viscous);
-    hash = with_real(hash, at->power_coulomb);
+    hash = with_reals(hash, at->power, MCT_EFFECT_COUNT);
+    hash = with_real(hash, at->power_frame);
     hash = with_real(hash, at->power_resistance);
     return with_real(hash, at->power_conversion);
 }

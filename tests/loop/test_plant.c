@@ -227,6 +227,49 @@ static void test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only(
     }
 }
 
+/* The drive knows the speed at the tick's start, so the current overshoots by what the speed changes in a tick. */
+static void test_the_drive_bounds_the_current_where_saturation_says_so(void)
+{
+    static const uint32_t motors[] = {MCT_MOTOR_QUASI_STATIC, MCT_MOTOR_INDUCTIVE};
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
+        for (int k = 0; k < 2; k++) {
+            mct_scene scene = scene_of(system, MCT_STEPPER_LEAP, MCT_VISCOUS | MCT_SATURATION | motors[k]);
+            *parameter_of(&scene, "supply_voltage") = 24;
+            const double limit = *parameter_of(&scene, "current_limit");
+            mct_plant plant;
+            start_plant(&plant, &scene);
+            double largest = 0;
+            for (int tick = 0; tick < 200; tick++) {
+                mct_evaluation now;
+                mct_plant_step(&plant, tick < 100 ? 24 : -24);
+                mct_plant_evaluate(&plant, &now);
+                largest = fmax(largest, fabs((double)now.current));
+            }
+            TEST_ASSERT_TRUE(largest > 0.9 * limit && largest <= limit * (1 + 1e-6));
+            mct_scene voltage_alone = scene;
+            voltage_alone.effects &= ~(uint32_t)MCT_SATURATION_CURRENT;
+            start_plant(&plant, &voltage_alone);
+            mct_plant_step(&plant, 24);
+            TEST_ASSERT_TRUE(plant.input == 24);
+        }
+    }
+}
+
+static void test_a_current_within_its_bound_is_left_alone_bit_for_bit(void)
+{
+    mct_scene bounded = scene_of(REACTION_WHEEL, MCT_STEPPER_EXPO, MCT_MOTOR_INDUCTIVE | MCT_SATURATION);
+    mct_scene free = bounded;
+    free.effects = MCT_MOTOR_INDUCTIVE;
+    mct_plant a, b;
+    start_plant(&a, &bounded);
+    start_plant(&b, &free);
+    for (int tick = 0; tick < 1000; tick++) {
+        mct_plant_step(&a, MCT_R(0.25) * (mct_real)(tick % 7));
+        mct_plant_step(&b, MCT_R(0.25) * (mct_real)(tick % 7));
+    }
+    TEST_ASSERT_EQUAL_MEMORY(a.state.x, b.state.x, sizeof a.state.x);
+}
+
 static void test_a_stepper_that_does_not_suit_is_refused_with_a_sentence(void)
 {
     const mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_EXPO, MCT_GRAVITY);
@@ -250,6 +293,8 @@ int main(void)
     RUN_TEST(test_several_turns_taken_out_of_one_tick_lose_nothing);
     RUN_TEST(test_upright_exactly_stays_upright_for_1e6_ticks);
     RUN_TEST(test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only);
+    RUN_TEST(test_the_drive_bounds_the_current_where_saturation_says_so);
+    RUN_TEST(test_a_current_within_its_bound_is_left_alone_bit_for_bit);
     RUN_TEST(test_a_stepper_that_does_not_suit_is_refused_with_a_sentence);
     return UNITY_END();
 }

@@ -144,6 +144,16 @@ def test_a_picture_stands_alone_in_the_colours_of_the_page(reported, scene):
     assert "body" not in style, "rules of the page alone"
 
 
+def test_the_works_of_the_effects_are_on_the_page_of_a_run_with_a_ledger(reported, mctau):
+    def keep_ledger(files):
+        run = mctau("run", files.scene, "--duration", "0.1", "--csv", files.csv, "--ledger", "--json")
+        files.json.write_text(run.stdout)
+
+    page = reported("cart_pole.toml", change=keep_ledger).text
+    for name in ("Where the energy came from", "viscous", "resistance", "stepper", "unexplained"):
+        assert name in page
+
+
 def test_there_is_a_page_and_a_picture_of_every_system(reported, mctau):
     for system in json.loads(mctau("list", "--json").stdout)["systems"]:
         made = reported(f"{system['name']}.toml", "scene.duration=1.6")

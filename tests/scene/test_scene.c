@@ -443,6 +443,70 @@ static void test_a_controller_needs_a_motor(void)
         "allowed with quasi_static or inductive");
 }
 
+static void test_a_bound_of_the_voltage_and_no_motor_exclude_each_other(void)
+{
+    assert_refused(MCT_ERROR_UNSUITED, CART "[effects]\nmotor = 'off'\nsaturation = true\n",
+                   "x.toml:5: effects.saturation: found true with effects.motor = off, which excludes it: a "
+                   "force or torque has no supply; allowed off, or a motor");
+    assert_read(CART "[effects]\nmotor = 'off'\n"); /* that of the defaults says nothing */
+    assert_read(CART "[effects]\nmotor = 'off'\nsaturation = 'off'\n");
+}
+
+static void test_a_switch_of_several_kinds_takes_true_for_its_first_kind(void)
+{
+    static const struct {
+        const char *text;
+        uint32_t bits;
+    } cases[] = {{"coulomb = true", MCT_COULOMB_MOREAU},
+                 {"coulomb = 'moreau'", MCT_COULOMB_MOREAU},
+                 {"coulomb = false", 0},
+                 {"coulomb = 'off'", 0},
+                 {"saturation = 'current'", MCT_SATURATION}};
+    char text[256];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        snprintf(text, sizeof text, "%s[effects]\nsaturation = false\n", CART);
+        if (strncmp(cases[i].text, "sat", 3) == 0) {
+            snprintf(text, sizeof text, "%s[effects]\n", CART);
+        }
+        strcat(text, cases[i].text);
+        assert_read(text);
+        TEST_ASSERT_EQUAL_HEX32(cases[i].bits, scene.effects & (MCT_COULOMB | MCT_SATURATION));
+    }
+    TEST_ASSERT_EQUAL_INT(MCT_OK, read_with(CART, "effects.coulomb=true", "effects.saturation=false"));
+    TEST_ASSERT_EQUAL_HEX32(MCT_COULOMB_MOREAU, scene.effects & (MCT_COULOMB | MCT_SATURATION));
+    assert_refused(
+        MCT_ERROR_RANGE, CART "[effects]\nmotor = true\n",
+        "x.toml:4: effects.motor: found true, a boolean, where a name in quotes belongs; allowed off, "
+        "quasi_static, inductive");
+}
+
+static void test_a_coefficient_that_no_effect_reads_is_noted_by_both_names(void)
+{
+    assert_read(CART "[parameters]\ncart_friction = 1\npole_mass = 0.2\ninductance = 1e-3\n"
+                     "[effects]\nviscous = false\nmotor = 'quasi_static'\n");
+    TEST_ASSERT_TRUE(mct_scene_note(&scene, 0, &why));
+    TEST_ASSERT_EQUAL_STRING("parameters.cart_friction: given with effects.viscous off: nothing reads it",
+                             why.text);
+    TEST_ASSERT_TRUE(mct_scene_note(&scene, 1, &why));
+    TEST_ASSERT_EQUAL_STRING(
+        "parameters.inductance: given with effects.motor not inductive: nothing reads it", why.text);
+    TEST_ASSERT_FALSE(mct_scene_note(&scene, 2, &why));
+    assert_read(CART "[parameters]\ncart_friction = 1\n");
+    TEST_ASSERT_FALSE(mct_scene_note(&scene, 0, &why));
+}
+
+static void test_a_vector_and_a_list_that_no_effect_reads_are_noted_too(void)
+{
+    assert_read("[scene]\nsystem = 'rigid_body'\n[parameters]\ngravity = [0, -1, 0]\n"
+                "forces = [['space', 0, 0, 0, 1, 0, 0]]\n[effects]\ngravity = false\nforces = false\n");
+    TEST_ASSERT_TRUE(mct_scene_note(&scene, 0, &why));
+    TEST_ASSERT_EQUAL_STRING("parameters.gravity_1: given with effects.gravity off: nothing reads it",
+                             why.text);
+    TEST_ASSERT_TRUE(mct_scene_note(&scene, 3, &why));
+    TEST_ASSERT_EQUAL_STRING("parameters.forces: given with effects.forces off: nothing reads it", why.text);
+    TEST_ASSERT_FALSE(mct_scene_note(&scene, 4, &why));
+}
+
 static void test_a_controller_and_an_open_loop_exclude_each_other(void)
 {
     assert_refused(MCT_ERROR_UNSUITED,
@@ -654,6 +718,10 @@ int main(void)
     RUN_TEST(test_a_stepper_too_coarse_for_the_motor_names_what_would_do);
     RUN_TEST(test_a_motor_without_inductance_sets_no_limit_and_has_no_current);
     RUN_TEST(test_a_controller_needs_a_motor);
+    RUN_TEST(test_a_bound_of_the_voltage_and_no_motor_exclude_each_other);
+    RUN_TEST(test_a_switch_of_several_kinds_takes_true_for_its_first_kind);
+    RUN_TEST(test_a_coefficient_that_no_effect_reads_is_noted_by_both_names);
+    RUN_TEST(test_a_vector_and_a_list_that_no_effect_reads_are_noted_too);
     RUN_TEST(test_a_controller_and_an_open_loop_exclude_each_other);
     RUN_TEST(test_a_key_that_the_kind_of_input_does_not_read_is_refused);
     RUN_TEST(test_steps_rise_and_match);

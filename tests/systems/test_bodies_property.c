@@ -355,13 +355,13 @@ static void check_power(trial *self)
         cross(arm, weight, couple);
         applied -= dot(couple, self->w);
     }
-    const double powers = (double)out->power_input + (double)out->power_viscous;
+    const double powers = energy_rate(out);
     check_near((double)out->kinetic_energy, kinetic, kinetic);
     check_near((double)out->potential_energy, potential,
                self->mass * size(self->gravity) * (4 + self->reach));
     check_near(powers, applied, power_size);
     check_near(through_constraints, powers, power_size);
-    TEST_ASSERT_TRUE(out->power_viscous <= 0);
+    TEST_ASSERT_TRUE(out->power[MCT_EFFECT_VISCOUS] <= 0 && out->power[MCT_EFFECT_DRAG] <= 0);
 }
 
 /*

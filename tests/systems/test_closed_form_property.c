@@ -351,22 +351,21 @@ static void check_power_balance(const trial *self)
     }
     const double change =
         (double)((reference_energy(&model, ahead) - reference_energy(&model, behind)) / (2 * small));
-    const double powers[] = {(double)out->power_input, (double)out->power_viscous, (double)out->power_coulomb,
-                             (double)out->power_resistance, (double)out->power_conversion};
+    const double sum = energy_rate(out);
     const double det = (double)out->M[0][0] * (double)out->M[1][1] - pow((double)out->M[0][1], 2);
     const double amplification = 1 + (double)out->M[0][0] * (double)out->M[1][1] / det;
-    double sum = 0;
-    double size = 0;
-    for (size_t i = 0; i < sizeof powers / sizeof powers[0]; i++) {
-        sum += powers[i];
-        size += fabs(powers[i]);
+    double size = fabs((double)out->power_input) + fabs((double)out->power_resistance) +
+                  fabs((double)out->power_conversion);
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        size += fabs((double)out->power[i]);
     }
     for (int j = 0; j < N; j++) {
         size += sqrt((double)out->M[j][j]) * self->norm * fabs((double)self->x[N + j]) * amplification;
     }
     worst[ENERGY] = fmax(worst[ENERGY], fabs(change - sum) / size);
     TEST_ASSERT_TRUE(fabs(change - sum) <= TOLERANCE * size);
-    TEST_ASSERT_TRUE(out->power_viscous <= 0 && out->power_coulomb <= 0 && out->power_resistance <= 0);
+    TEST_ASSERT_TRUE(out->power[MCT_EFFECT_VISCOUS] <= 0 && out->power[MCT_EFFECT_COULOMB] <= 0 &&
+                     out->power_resistance <= 0);
     TEST_ASSERT_TRUE((self->effects & MCT_MOTOR) != 0 ||
                      (out->power_resistance == 0 && out->power_conversion == 0));
 }

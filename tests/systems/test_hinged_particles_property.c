@@ -307,7 +307,7 @@ static void check_powers(trial *self)
         }
     }
     const mct_evaluation *const out = &self->out;
-    compare(POWER, (double)(out->power_input + out->power_viscous + out->power_coulomb), change, size);
+    compare(POWER, energy_rate(out), change, size);
     compare(WORK, work, self->couple * rate, size);
 }
 

@@ -129,7 +129,7 @@ static void check_power(trial *self)
     const double rate = self->x[1];
     const double change = inertia * rate * at->acceleration[0] - weight * sin(self->x[0]) * rate;
     const double size = (fabs((double)self->input) + fabs(self->couple) + weight) * fabs(rate);
-    check_near(at->power_input + at->power_viscous + at->power_coulomb, change, size);
+    check_near(energy_rate(at), change, size);
     check_near(at->kinetic_energy, 0.5 * inertia * rate * rate, inertia * rate * rate);
     check_near(at->potential_energy, weight * cos(self->x[0]), weight);
 }

@@ -196,7 +196,7 @@ static void check_powers(trial *self)
             size += mass * fabs(v * a);
         }
     }
-    compare(POWER, self->out.power_input + self->out.power_viscous + self->out.power_coulomb, change, size);
+    compare(POWER, energy_rate(&self->out), change, size);
 }
 
 static void test_energy_changes_by_input_and_friction_and_nothing_else(void)

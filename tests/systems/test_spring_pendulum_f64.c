@@ -280,7 +280,7 @@ static double ledger_gap(double dt)
         for (int side = 0; side < 2; side++) {
             plant.input = 0.05;
             mct_plant_evaluate(&plant, &now);
-            work += dt / 2 * (now.power_input + now.power_viscous);
+            work += dt / 2 * energy_rate(&now);
             if (side == 0) {
                 mct_plant_step(&plant, 0.05);
             }

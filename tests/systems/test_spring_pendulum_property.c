@@ -167,7 +167,7 @@ static void check_power_balance(const trial *self)
                             mass * g * r * w * c,
                             k * (r - self->scene.parameters[2]) * rd,
                             -(double)out->power_input,
-                            -(double)out->power_viscous};
+                            -(double)out->power[MCT_EFFECT_VISCOUS]};
     double sum = 0;
     double size = 0;
     for (int i = 0; i < 8; i++) {
@@ -178,7 +178,7 @@ static void check_power_balance(const trial *self)
     compare("power", (mct_real)sum, 0, size);
     const double kinetic = mass * (rd * rd + r * r * w * w) / 2;
     compare("kinetic energy", out->kinetic_energy, (mct_real)kinetic, kinetic);
-    TEST_ASSERT_TRUE(out->power_viscous <= 0);
+    TEST_ASSERT_TRUE(out->power[MCT_EFFECT_VISCOUS] <= 0);
 }
 
 static void for_all_trials(void (*check)(const trial *))

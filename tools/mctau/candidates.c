@@ -6,6 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "instructions.h"
 #include "mctau/stepper.h"
 #include "runner_cost.h"
 #include "say.h"
@@ -53,6 +54,7 @@ double *study_rows(const study *self)
 static mct_scene scene_of(const study *self, const candidate *one)
 {
     mct_scene scene = self->scene;
+    scene.effects = (scene.effects & ~one->without) | one->with;
     scene.stepper = one->stepper;
     scene.precision = one->precision;
     scene.substeps = one->substeps;
@@ -61,8 +63,7 @@ static mct_scene scene_of(const study *self, const candidate *one)
     return scene;
 }
 
-/* Whether there is such a kernel, and the system prepares constants for it. */
-static bool suits(const study *self, const candidate *one)
+bool study_suits(const study *self, const candidate *one)
 {
     mct_message why;
     trial nothing = {.ticks = 1};
@@ -98,25 +99,35 @@ static double attitude_distance(const double *a, const double *b)
 }
 
 /* First entry of the quaternion, or -1. */
-static int quaternion_of(const study *self)
+static int quaternion_of(const mct_system *system)
 {
-    const mct_system *system = mct_systems[self->scene.system];
     return system->attitude == MCT_ATTITUDE_NONE ? -1 : mct_rate_index(system) - 4;
 }
 
 /* Largest distance of two states; infinite when one is no number. */
-static double row_distance(const study *self, const double *a, const double *b)
+double state_distance(const mct_system *system, int states, const double *scale, const double *a,
+                      const double *b, int *worst)
 {
-    const int quaternion = quaternion_of(self);
+    const int quaternion = quaternion_of(system);
     double largest = quaternion < 0 ? 0 : attitude_distance(a + quaternion, b + quaternion);
-    for (int i = 0; i < self->states; i++) {
+    int where = quaternion < 0 ? 0 : quaternion;
+    for (int i = 0; i < states; i++) {
         const bool is_turned = quaternion >= 0 && i >= quaternion && i < quaternion + 4;
-        if (!is_turned && !mct_state_is_phase(mct_systems[self->scene.system], i)) {
-            const double distance = fabs(a[i] - b[i]) / self->scale[i];
+        if (!is_turned && !mct_state_is_phase(system, i)) {
+            const double distance = fabs(a[i] - b[i]) / scale[i];
+            where = distance <= largest ? where : i;
             largest = distance <= largest ? largest : distance; /* a NaN is kept */
         }
     }
+    if (worst != NULL) {
+        *worst = where;
+    }
     return isnan(largest) ? (double)INFINITY : largest;
+}
+
+static double row_distance(const study *self, const double *a, const double *b)
+{
+    return state_distance(mct_systems[self->scene.system], self->states, self->scale, a, b, NULL);
 }
 
 static uint64_t common_multiple(int a, int b)
@@ -195,7 +206,7 @@ static limit limit_of(const study *self, int stepper, double seconds)
         if (known > 1 && 2 * spent > seconds) { /* the next run takes as long as all before it */
             break;
         }
-        if (!suits(self, &run)) {
+        if (!study_suits(self, &run)) {
             continue;
         }
         if (!study_follow(self, &run, rows)) {
@@ -239,7 +250,7 @@ static int best_stepper(const study *self, int but, const bool *refused)
     for (int i = 0; i < MCT_STEPPER_COUNT; i++) {
         const candidate finest = {.stepper = i, .multiple = 1, .substeps = 1 << (LEVELS - 1)};
         const bool better = best < 0 || mct_steppers[i].order >= mct_steppers[best].order;
-        if (!refused[i] && better && (but < 0 || !is_same_family(i, but)) && suits(self, &finest)) {
+        if (!refused[i] && better && (but < 0 || !is_same_family(i, but)) && study_suits(self, &finest)) {
             best = i;
         }
     }
@@ -260,7 +271,7 @@ static void set_scale(study *self, const double *rows)
 static bool follow_somehow(const study *self, candidate *run, double *rows)
 {
     for (run->substeps = 4; run->substeps <= 1 << (LEVELS - 1); run->substeps *= 2) {
-        if (suits(self, run) && study_follow(self, run, rows)) {
+        if (study_suits(self, run) && study_follow(self, run, rows)) {
             return true;
         }
     }
@@ -387,11 +398,16 @@ static int find_inputs(study *self, const scene_file *file, uint64_t ticks)
     return 0;
 }
 
+int study_begin_inputs(study *self, const scene_file *file)
+{
+    const int exit_code = set_up(self, file);
+    self->progress = isatty(STDERR_FILENO) == 1;
+    return exit_code != 0 ? exit_code : find_inputs(self, file, self->ticks);
+}
+
 int study_begin(study *self, const scene_file *file, double seconds)
 {
-    int exit_code = set_up(self, file);
-    self->progress = isatty(STDERR_FILENO) == 1;
-    exit_code = exit_code != 0 ? exit_code : find_inputs(self, file, self->ticks);
+    const int exit_code = study_begin_inputs(self, file);
     if (exit_code != 0) {
         return exit_code;
     }
@@ -444,7 +460,7 @@ static int add(const study *self, candidate one, candidate *found, int count)
 {
     one.step = one.multiple * self->scene.dt / one.substeps;
     one.instructions = one.predicted = (double)NAN;
-    if (count == MAX_CANDIDATES || !suits(self, &one)) {
+    if (count == MAX_CANDIDATES || !study_suits(self, &one)) {
         return count;
     }
     found[count] = one;
@@ -547,7 +563,11 @@ void study_time(const study *self, candidate *list, int count)
     free(samples);
 }
 
-bool study_count(const study *self, candidate *list, int count)
+/* --- instructions --- */
+
+const char *const counter_names[COUNTERS] = {"processor", "valgrind", "none"};
+
+static bool count_here(const study *self, candidate *list, int count)
 {
     bool counted = false;
     for (int i = 0; i < count; i++) {
@@ -561,6 +581,47 @@ bool study_count(const study *self, candidate *list, int count)
     }
     return counted;
 }
+
+void study_count_again(const study *self, candidate *list, int count)
+{
+    (void)count_here(self, list, count);
+}
+
+/* NULL, or why not. */
+static const char *count_by_valgrind(candidate *list, int count, const char *path, const char *note)
+{
+    if (strcmp(path, "-") == 0) {
+        return "valgrind cannot read the scene once more from standard input";
+    }
+    const size_t pieces = 2 * (size_t)count; /* half of the ticks, and all: what begins and ends drops out */
+    uint64_t *counts = need_memory(calloc(pieces, sizeof *counts));
+    const char *why_not = instructions_by_valgrind(note, counts, pieces);
+    for (int i = 0; i < count && why_not == NULL; i++) {
+        list[i].instructions =
+            (double)(counts[2 * i + 1] - counts[2 * i]) / (RUNNER_COUNTED_TICKS / 2) / list[i].multiple;
+    }
+    free(counts);
+    return why_not;
+}
+
+const char *study_count(const study *self, candidate *list, int count, const char *path, const char *note,
+                        int *counter)
+{
+    if (*counter == COUNTER_NONE) {
+        return "not asked for";
+    }
+    if (*counter != COUNTER_VALGRIND && count_here(self, list, count)) {
+        *counter = COUNTER_PROCESSOR;
+        return NULL;
+    }
+    if (*counter == COUNTER_PROCESSOR) {
+        return "the kernel does not let a program read the processor's counter";
+    }
+    *counter = COUNTER_VALGRIND;
+    return count_by_valgrind(list, count, path, note);
+}
+
+/* --- the front --- */
 
 static double known_error(const study *self, const candidate *one)
 {
@@ -679,6 +740,17 @@ int read_precision(const char *name, int *precision)
     return name == NULL || *precision != ANY_PRECISION
                ? 0
                : say(EXIT_USAGE, "--precision: found %s; allowed %s", name, runner_names());
+}
+
+int read_counter(const char *name, int *counter)
+{
+    *counter = COUNTER_ANY;
+    for (int i = 0; name != NULL && i < COUNTERS; i++) {
+        *counter = strcmp(name, counter_names[i]) == 0 ? i : *counter;
+    }
+    return name == NULL || *counter != COUNTER_ANY
+               ? 0
+               : say(EXIT_USAGE, "--instructions: found %s; allowed processor, valgrind, none", name);
 }
 
 int read_number(const char *name, const char *text, double least, double most, const char *allowed,

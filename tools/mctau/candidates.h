@@ -19,9 +19,10 @@ enum { ANY_PRECISION = -1, MAX_CANDIDATES = 4096 };
 typedef struct {
     int stepper;
     int precision;
-    int multiple; /* ticks of the scene in one step, or 1 */
-    int substeps; /* steps in a tick, or 1 */
-    double step;  /* [s] */
+    int multiple;           /* ticks of the scene in one step, or 1 */
+    int substeps;           /* steps in a tick, or 1 */
+    double step;            /* [s] */
+    uint32_t without, with; /* effects taken from the scene, and added to it */
     bool diverged;
     double error_end, error_worst; /* measured; infinite when it diverged */
     double predicted;              /* error, from pilots */
@@ -68,6 +69,8 @@ typedef struct {
  * methods. Gives 0, or says what is wrong and gives the exit code.
  */
 int study_begin(study *self, const scene_file *file, double seconds);
+/* Without horizon and reference: the inputs alone. */
+int study_begin_inputs(study *self, const scene_file *file);
 /* Without horizon and reference, which are known: as many candidates as a study of so many ticks has. */
 int study_begin_again(study *self, const scene_file *file, uint64_t ticks);
 void study_end(study *self);
@@ -89,6 +92,9 @@ void study_json(const study *self, json *out);
  */
 int study_candidates(const study *self, int precision, bool deep, candidate *found);
 
+/* Whether there is such a kernel, and the system prepares constants for it. */
+bool study_suits(const study *self, const candidate *one);
+
 /* States of a candidate's run, those after its ticks; `rows` has room for those of the reference. */
 bool study_follow(const study *self, const candidate *one, double *rows);
 double *study_rows(const study *self);
@@ -96,12 +102,35 @@ double *study_rows(const study *self);
 double study_distance(const study *self, const double *a, int a_multiple, const double *b, int b_multiple,
                       double *at_end);
 
+/*
+ * The same of two states of a system with `states` entries each, or fewer; `worst`, unless NULL, becomes the state that
+ * differs most, of a rotation the first entry.
+ */
+double state_distance(const mct_system *system, int states, const double *scale, const double *a,
+                      const double *b, int *worst);
+
 /* Fills error_end, error_worst, diverged of each. */
 void study_measure(const study *self, candidate *list, int count);
 /* Fills ns, ns_low, ns_high; not of those that diverged. */
 void study_time(const study *self, candidate *list, int count);
-/* Fills instructions; false where they could not be counted. */
-bool study_count(const study *self, candidate *list, int count);
+/* Who counts instructions. */
+enum { COUNTER_ANY = -1, COUNTER_PROCESSOR, COUNTER_VALGRIND, COUNTER_NONE, COUNTERS };
+extern const char *const counter_names[COUNTERS];
+#define OPTION_INSTRUCTIONS                                                                              \
+    {                                                                                                    \
+        "instructions", "BY", NULL,                                                                      \
+            "who counts instructions: processor, valgrind or none; default: the processor, or valgrind " \
+            "where the kernel does not let a program read its counter"                                   \
+    }
+
+/*
+ * Fills instructions; NULL, or why they could not be counted. `counter` becomes the one that did. Under valgrind the
+ * program runs once more: with `note` it has to begin the same study again, and to count the same candidates.
+ */
+const char *study_count(const study *self, candidate *list, int count, const char *path, const char *note,
+                        int *counter);
+/* There: counts for the process that has asked. */
+void study_count_again(const study *self, candidate *list, int count);
 /*
  * Marks the candidates of which none is both cheaper and more accurate; errors below the reference's count as
  * its own.
@@ -119,6 +148,8 @@ void candidate_json(const candidate *self, const study *of, json *out);
  * code.
  */
 int read_precision(const char *name, int *precision);
+/* A counter's number by its name; COUNTER_ANY for NULL; the same. */
+int read_counter(const char *name, int *counter);
 /* A number within a range, of an option; the same. `allowed` ends the sentence. */
 int read_number(const char *name, const char *text, double least, double most, const char *allowed,
                 double *value);

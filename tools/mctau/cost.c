@@ -21,9 +21,7 @@ static const option options[] = {
     {"precision", "NAME", NULL, "only candidates of this precision, double or float; default: both"},
     {"reference-seconds", "S", NULL,
      "computing time that each of the reference's two methods may take; default 4"},
-    {"instructions", "BY", NULL,
-     "who counts instructions: processor, valgrind or none; default: the processor, or valgrind where the "
-     "kernel does not let a program read its counter"},
+    OPTION_INSTRUCTIONS,
     {"plot", "FILE.svg", NULL, "a diagram: error over cost, a line for each stepper and precision"},
     {"html", "FILE", NULL, "a page that stands alone, with diagram and table"},
     OPTION_SET,
@@ -213,10 +211,7 @@ static int show_costs(const costs *self, const scene_file *file)
     return plot != NULL || html != NULL ? draw(self, file->path, plot, html) : 0;
 }
 
-/* --- instructions --- */
-
-enum { ANYONE = -1, PROCESSOR, VALGRIND, NOBODY, COUNTERS };
-static const char *const counters[] = {"processor", "valgrind", "none"};
+/* --- all of it --- */
 
 /* Under valgrind: the candidates that the first process has, and no more than that. */
 static int count_under_valgrind(const scene_file *file, int precision)
@@ -225,60 +220,12 @@ static int count_under_valgrind(const scene_file *file, int precision)
     const int exit_code = study_begin_again(&about, file, strtoull(instructions_note(), NULL, 10));
     if (exit_code == 0) {
         candidate *list = need_memory(malloc(MAX_CANDIDATES * sizeof *list));
-        study_count(&about, list, study_candidates(&about, precision, false, list));
+        study_count_again(&about, list, study_candidates(&about, precision, false, list));
         free(list);
         study_end(&about);
     }
     return exit_code;
 }
-
-/* NULL, or why not. */
-static const char *count_by_valgrind(costs *self, const char *path)
-{
-    if (strcmp(path, "-") == 0) {
-        return "valgrind cannot read the scene once more from standard input";
-    }
-    char ticks[24];
-    snprintf(ticks, sizeof ticks, "%llu", (unsigned long long)self->study.ticks);
-    const size_t pieces =
-        2 * (size_t)self->count; /* half of the ticks, and all: what begins and ends drops out */
-    uint64_t *counts = need_memory(calloc(pieces, sizeof *counts));
-    const char *why_not = instructions_by_valgrind(ticks, counts, pieces);
-    for (int i = 0; i < self->count && why_not == NULL; i++) {
-        self->list[i].instructions =
-            (double)(counts[2 * i + 1] - counts[2 * i]) / (RUNNER_COUNTED_TICKS / 2) / self->list[i].multiple;
-    }
-    free(counts);
-    return why_not;
-}
-
-static void count_instructions(costs *self, const scene_file *file, int counter)
-{
-    static const char closed[] = "the kernel does not let a program read the processor's counter";
-    if (counter == NOBODY) {
-        self->not_counted = "not asked for";
-        return;
-    }
-    if (counter != VALGRIND && study_count(&self->study, self->list, self->count)) {
-        self->counted_by = counters[PROCESSOR];
-        return;
-    }
-    self->not_counted = counter == PROCESSOR ? closed : count_by_valgrind(self, file->path);
-    self->counted_by = self->not_counted == NULL ? counters[VALGRIND] : NULL;
-}
-
-static int read_counter(const char *name, int *counter)
-{
-    *counter = ANYONE;
-    for (int i = 0; name != NULL && i < COUNTERS; i++) {
-        *counter = strcmp(name, counters[i]) == 0 ? i : *counter;
-    }
-    return name == NULL || *counter != ANYONE
-               ? 0
-               : say(EXIT_USAGE, "--instructions: found %s; allowed processor, valgrind, none", name);
-}
-
-/* --- all of it --- */
 
 static int run_costs(const scene_file *file, int precision, double seconds, int counter)
 {
@@ -291,7 +238,10 @@ static int run_costs(const scene_file *file, int precision, double seconds, int 
     self.count = study_candidates(&self.study, precision, false, self.list);
     study_measure(&self.study, self.list, self.count);
     study_time(&self.study, self.list, self.count);
-    count_instructions(&self, file, counter);
+    char note[24];
+    snprintf(note, sizeof note, "%llu", (unsigned long long)self.study.ticks);
+    self.not_counted = study_count(&self.study, self.list, self.count, file->path, note, &counter);
+    self.counted_by = self.not_counted == NULL ? counter_names[counter] : NULL;
     study_mark_pareto(&self.study, self.list, self.count);
     const int shown = show_costs(&self, file);
     free(self.list);

@@ -15,7 +15,7 @@ static mct_status refuse(const char *path, int reason, mct_message *why)
 {
     mct_message_clear(why);
     mct_message_add(why, path);
-    mct_message_add(why, ": the CSV file cannot be written: ");
+    mct_message_add(why, ": the file cannot be written: ");
     mct_message_add(why, strerror(reason));
     return MCT_ERROR_IO;
 }

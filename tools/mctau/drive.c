@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "json.h"
@@ -325,13 +324,6 @@ static void print_people(const drive_report *report, FILE *file)
 }
 
 /* --- from beginning to end --- */
-
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat there[2];
-    return stat(a, &there[0]) == 0 && stat(b, &there[1]) == 0 && S_ISREG(there[0].st_mode) &&
-           there[0].st_dev == there[1].st_dev && there[0].st_ino == there[1].st_ino;
-}
 
 static int check_options(const scene_file *file, const drive_options *asked, bool as_json)
 {

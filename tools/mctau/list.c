@@ -80,6 +80,19 @@ static const mct_field *kind_of(const char *table)
     return NULL;
 }
 
+/*
+ * An effect by which something is read: "viscous", or "motor = inductive" where not every kind of it does. The text is
+ * kept until the next call with the same buffer.
+ */
+static const char *reader_name(const mct_effect *effect, uint32_t readers, char *buffer, size_t size)
+{
+    if ((effect->mask & ~readers) == 0) {
+        return effect->name;
+    }
+    snprintf(buffer, size, "%s = %s", effect->name, effect_choice(effect, readers));
+    return buffer;
+}
+
 /* Default of a text, which stands in the scene that the library fills. */
 static const char *default_text(const mct_scene *defaults, const mct_field *field)
 {
@@ -96,12 +109,17 @@ static void json_range(json *out, const mct_field *field)
     json_number(out, "default", field->standard);
 }
 
-static void json_quantity(json *out, const char *key, const mct_field *field)
+static void json_quantity_within(json *out, const mct_field *field)
 {
-    json_object(out, key);
     json_text(out, "name", field->name);
     json_range(out, field);
     json_text(out, "doc", field->doc);
+}
+
+static void json_quantity(json *out, const char *key, const mct_field *field)
+{
+    json_object(out, key);
+    json_quantity_within(out, field);
     json_end_object(out);
 }
 
@@ -140,18 +158,32 @@ static void json_choices(json *out, const char *key, const mct_field *field)
     json_end_list(out);
 }
 
+/* The effects that read a parameter or a list; none: it is read always. */
+static void json_readers(json *out, uint32_t readers)
+{
+    char buffer[64];
+    json_list(out, "read_by");
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        if (mct_effects[i].mask & readers) {
+            json_text(out, NULL, reader_name(&mct_effects[i], readers, buffer, sizeof buffer));
+        }
+    }
+    json_end_list(out);
+}
+
 /* A quantity of a system, or a name. */
 static void json_parameter(json *out, const mct_field *field)
 {
-    if (field->kind != MCT_FIELD_CHOICE) {
-        json_quantity(out, NULL, field);
-        return;
-    }
     json_object(out, NULL);
-    json_text(out, "name", field->name);
-    json_choices(out, "choices", field);
-    json_text(out, "default", choice_name(field, (int)field->standard));
-    json_text(out, "doc", field->doc);
+    if (field->kind != MCT_FIELD_CHOICE) {
+        json_quantity_within(out, field);
+    } else {
+        json_text(out, "name", field->name);
+        json_choices(out, "choices", field);
+        json_text(out, "default", choice_name(field, (int)field->standard));
+        json_text(out, "doc", field->doc);
+    }
+    json_readers(out, field->effects);
     json_end_object(out);
 }
 
@@ -160,6 +192,7 @@ static void json_rows(json *out, const mct_row_list *rows)
     json_object(out, NULL);
     json_text(out, "name", rows->name);
     json_text(out, "doc", rows->doc);
+    json_readers(out, rows->effects);
     json_integer(out, "fewest_rows", rows->fewest_rows);
     json_integer(out, "most_rows", rows->most_rows);
     json_list(out, "columns");
@@ -220,6 +253,13 @@ static void json_system(json *out, const mct_system *system)
             json_object(out, NULL);
             json_text(out, "name", mct_effects[i].name);
             json_choice_of(out, "default", &mct_effects[i], system->standard_effects);
+            json_list(out, "choices");
+            for (int j = 0; mct_effects[i].choices != NULL && mct_effects[i].choices[j] != NULL; j++) {
+                if (!(mct_effects[i].bits[j] & ~system->effects)) {
+                    json_text(out, NULL, mct_effects[i].choices[j]);
+                }
+            }
+            json_end_list(out);
             json_end_object(out);
         }
     }
@@ -354,6 +394,20 @@ static void print_choices(const mct_field *field)
     printf("\n");
 }
 
+/* "; read by drag, buoyancy" of a coefficient */
+static void print_readers(uint32_t readers)
+{
+    char buffer[64];
+    const char *between = "; read by";
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        if (mct_effects[i].mask & readers) {
+            printf("%s %s", between, reader_name(&mct_effects[i], readers, buffer, sizeof buffer));
+            between = ",";
+        }
+    }
+    printf("\n");
+}
+
 static void print_quantity(const mct_field *field)
 {
     if (field->kind == MCT_FIELD_CHOICE) {
@@ -362,8 +416,9 @@ static void print_quantity(const mct_field *field)
         print_choices(field);
         return;
     }
-    printf("  %-24s %-8s %12g  %10g to %-10g %s\n", field->name, field->unit, field->standard, field->minimum,
+    printf("  %-24s %-8s %12g  %10g to %-10g %s", field->name, field->unit, field->standard, field->minimum,
            field->maximum, field->doc);
+    print_readers(field->effects);
 }
 
 static void print_heading(const char *title)
@@ -373,8 +428,9 @@ static void print_heading(const char *title)
 
 static void print_rows(const mct_row_list *rows)
 {
-    printf("\n[parameters] %s: a list of %d to %d %s; %s\n", rows->name, rows->fewest_rows, rows->most_rows,
+    printf("\n[parameters] %s: a list of %d to %d %s; %s", rows->name, rows->fewest_rows, rows->most_rows,
            rows->column_count > 1 ? "rows" : "numbers", rows->doc);
+    print_readers(rows->effects);
     for (int i = 0; i < rows->column_count; i++) {
         const mct_field *field = &rows->columns[i];
         if (field->kind == MCT_FIELD_CHOICE) {

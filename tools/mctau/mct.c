@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "json.h"
+#include "ledger.h"
 #include "say.h"
 #include "scene_file.h"
 #include "verbs.h"
@@ -46,16 +47,11 @@ const verb verb_mct = {
     .run = run_verb,
 };
 
-static double total(const energies *energy)
+/* Of a base or a frame that moves as prescribed: through the constraints. */
+static double prescribed_power(const powers *power)
 {
-    return energy->kinetic + energy->potential + energy->magnetic;
-}
-
-/* Rate of change of all energy. */
-static double total_power(const energies *power)
-{
-    return power->power_input + power->power_viscous + power->power_coulomb + power->power_resistance +
-           power->power_conversion + power->power_base;
+    return power->of[MCT_EFFECT_BASE_MOTION] + power->of[MCT_EFFECT_CENTRIFUGAL] +
+           power->of[MCT_EFFECT_CORIOLIS] + power->of[MCT_EFFECT_EULER] + power->of[POWER_FRAME];
 }
 
 /* What the particles' constraint forces come to. */
@@ -126,6 +122,7 @@ static void print_json(const scene_file *file, const mct_result *at)
 {
     const int n = at->coordinates;
     const sums sum = sums_of(at);
+    const energies gains = powers_gains(&at->power, file->scene.effects);
     json out = json_begin(stdout, "mctau.mct/1");
     json_text(&out, "system", mct_systems[file->scene.system]->name);
     json_text(&out, "precision", file->runner->precision);
@@ -173,21 +170,11 @@ static void print_json(const scene_file *file, const mct_result *at)
     }
     json_end_object(&out);
     json_number(&out, "current", at->current);
-    json_number(&out, "energy", total(&at->energy));
-    json_object(&out, "energies");
-    json_number(&out, "kinetic", at->energy.kinetic);
-    json_number(&out, "potential", at->energy.potential);
-    json_number(&out, "magnetic", at->energy.magnetic);
-    json_end_object(&out);
-    json_number(&out, "power", total_power(&at->energy));
-    json_object(&out, "powers");
-    json_number(&out, "input", at->energy.power_input);
-    json_number(&out, "viscous", at->energy.power_viscous);
-    json_number(&out, "coulomb", at->energy.power_coulomb);
-    json_number(&out, "resistance", at->energy.power_resistance);
-    json_number(&out, "conversion", at->energy.power_conversion);
-    json_number(&out, "base", at->energy.power_base);
-    json_end_object(&out);
+    json_number(&out, "energy", energy_total(at->energy));
+    json_energies(&out, "energies", &at->energy);
+    json_number(&out, "power", energy_total(gains));
+    json_powers(&out, "powers", &at->power, &file->scene);
+    json_energies(&out, "rates", &gains);
     json_finish(&out);
 }
 
@@ -309,8 +296,9 @@ static void print_gauss(const mct_result *at, const sums *sum)
         {"e differs by", sum->force_difference, "", "from the residual of the least squares, relative"},
         {"work of e", sum->work, "W", "e . xd"},
         {"work of couples", sum->work_of_couples, "W", "of joint friction and torques, which e passes on"},
-        {"of the base", at->energy.power_base, "W", "which moves as prescribed"},
-        {"of constraints", sum->work - sum->work_of_couples - at->energy.power_base, "W", "the rest: none"},
+        {"of the base", prescribed_power(&at->power), "W", "which moves as prescribed"},
+        {"of constraints", sum->work - sum->work_of_couples - prescribed_power(&at->power), "W",
+         "the rest: none"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         printf("  %-18s", rows[i].name);
@@ -319,38 +307,17 @@ static void print_gauss(const mct_result *at, const sums *sum)
     }
 }
 
-static void print_ledger(const mct_result *at)
+static void print_ledger(const scene_file *file, const mct_result *at)
 {
-    const energies *e = &at->energy;
-    const struct {
-        const char *name;
-        double value;
-    } energy[] = {{"kinetic", e->kinetic},
-                  {"potential", e->potential},
-                  {"magnetic", e->magnetic},
-                  {"total", total(e)}},
-      power[] = {{"input", e->power_input},
-                 {"viscous friction", e->power_viscous},
-                 {"dry friction", e->power_coulomb},
-                 {"resistance", e->power_resistance},
-                 {"conversion", e->power_conversion},
-                 {"moving base", e->power_base},
-                 {"total", total_power(e)}};
-    printf("\nEnergy [J]\n");
-    for (size_t i = 0; i < sizeof energy / sizeof energy[0]; i++) {
-        printf("  %-18s", energy[i].name);
-        print_number(14, 8, energy[i].value);
-        printf("\n");
-    }
-    printf("\nPower [W]: what changes it; the total is its rate\n");
-    for (size_t i = 0; i < sizeof power / sizeof power[0]; i++) {
-        printf("  %-18s", power[i].name);
-        print_number(14, 8, power[i].value);
-        printf("\n");
-    }
+    const energies gains = powers_gains(&at->power, file->scene.effects);
+    print_energies_head(stdout, "Energy [J]");
+    print_energies(stdout, "at this state", &at->energy);
+    print_energies_head(stdout, "Power [W]: what changes it");
+    print_powers(stdout, &at->power, &file->scene);
+    print_energies(stdout, "its rate", &gains);
 }
 
-static void print_motion(const mct_result *at, bool christoffel)
+static void print_motion(const scene_file *file, const mct_result *at, bool christoffel)
 {
     static const char *mass_units[3] = {"kg", "kg m", "kg m^2"};
     static const char *damping_units[3] = {"N s/m", "N s", "N m s"};
@@ -365,7 +332,7 @@ static void print_motion(const mct_result *at, bool christoffel)
     print_vectors(at);
     print_particles(at, &sum);
     print_gauss(at, &sum);
-    print_ledger(at);
+    print_ledger(file, at);
 }
 
 /* Of a process M a = tau is its next step. */
@@ -400,7 +367,7 @@ static void print_text(const scene_file *file, const mct_result *at, bool christ
     if (mct_systems[file->scene.system]->is_process) {
         print_process(at);
     } else {
-        print_motion(at, christoffel);
+        print_motion(file, at, christoffel);
     }
 }
 

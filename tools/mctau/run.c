@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "mctau/supervisor.h"
@@ -25,6 +24,8 @@ static const option options[] = {
      "one row a tick: time, states, estimates, input wanted and applied, mode, faults; - is stdout"},
     {"log", "FILE", "telemetry.log", "event log of every tick, for replay and for LCM's tools"},
     {"lcm", "URL", "telemetry.lcm", "publishes every tick, e.g. udpm://239.255.76.67:7667?ttl=0"},
+    {"ledger", NULL, NULL,
+     "the work of each effect, and what the stepper adds to the energy: follows every tick's exact motion"},
     OPTION_JSON,
     {NULL, NULL, NULL, NULL},
 };
@@ -108,14 +109,6 @@ static void watch_signals(void)
 
 /* --- what a run may overwrite --- */
 
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat there[2];
-    return a != NULL && b != NULL && stat(a, &there[0]) == 0 && stat(b, &there[1]) == 0 &&
-           S_ISREG(there[0].st_mode) && there[0].st_dev == there[1].st_dev &&
-           there[0].st_ino == there[1].st_ino;
-}
-
 static int check_outputs(const scene_file *file, const run_options *run)
 {
     const char *const outputs[] = {run->csv, run->log};
@@ -194,10 +187,33 @@ static int exit_code_of(const run_report *report)
     }
 }
 
+/*
+ * Whether the mechanism is simulated here; not behind a bus or in a recording, "socketcan:can0",
+ * "candump:FILE".
+ */
+static bool simulates(const mct_scene *scene)
+{
+    return strchr(scene->hal, ':') == NULL;
+}
+
+/* Follows the run in double, where this build has it. */
+static int open_ledger(const scene_file *file, const mct_runner *keeper, run_options *asked)
+{
+    mct_message why;
+    mct_message_clear(&why);
+    if (!simulates(&file->scene) || mct_systems[file->scene.system]->is_process) {
+        return say(EXIT_USAGE, "--ledger: found %s, whose energy nobody knows; allowed a simulated mechanism",
+                   simulates(&file->scene) ? mct_systems[file->scene.system]->name : file->scene.hal);
+    }
+    asked->ledger_tick = keeper->ledger_tick;
+    const mct_status status = keeper->ledger_begin(&file->scene, &asked->ledger, &why);
+    return status != MCT_OK ? say_status(status, &why) : 0;
+}
+
 static int run_scene(const scene_file *file, const arguments *given)
 {
     mct_message why;
-    const run_options asked = {
+    run_options asked = {
         .csv = arguments_value(given, "csv"),
         .log = file->scene.log,
         .lcm = file->scene.lcm,
@@ -223,8 +239,19 @@ static int run_scene(const scene_file *file, const arguments *given)
     if (exit_code != 0) {
         return exit_code;
     }
+    const mct_runner *const in_double = find_runner(MCT_PRECISION_DOUBLE);
+    const mct_runner *const keeper = in_double != NULL ? in_double : file->runner;
+    if (arguments_value(given, "ledger") != NULL) {
+        exit_code = open_ledger(file, keeper, &asked);
+        if (exit_code != 0) {
+            return exit_code;
+        }
+    }
     watch_signals();
     const mct_status status = file->runner->run(&file->scene, &asked, &report.result, &why);
+    if (asked.ledger != NULL) {
+        keeper->ledger_end(asked.ledger, &report.ledger);
+    }
     if (status != MCT_OK) {
         return say_status(status, &why);
     }
@@ -236,15 +263,6 @@ static int run_scene(const scene_file *file, const arguments *given)
     }
     exit_code = complain_about_files(&report.result, &asked);
     return exit_code != 0 ? exit_code : exit_code_of(&report);
-}
-
-/*
- * Whether the mechanism is simulated here; not behind a bus or in a recording, "socketcan:can0",
- * "candump:FILE".
- */
-static bool simulates(const mct_scene *scene)
-{
-    return strchr(scene->hal, ':') == NULL;
 }
 
 static int run_verb(const arguments *given)

@@ -13,6 +13,7 @@ typedef struct {
     const scene_file *scene;
     const run_options *options;
     run_result result;
+    ledger_result ledger; /* where the options have one */
     verdict verdict;
 } run_report;
 

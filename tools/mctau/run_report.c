@@ -4,16 +4,12 @@
 #include <string.h>
 
 #include "json.h"
+#include "ledger.h"
 #include "mctau/stepper.h"
 #include "mctau/supervisor.h"
 #include "run.h"
 
 #define DEGREES 57.29577951308232
-
-static double total(const energies *energy)
-{
-    return energy->kinetic + energy->potential + energy->magnetic;
-}
 
 static double time_of(const run_report *report)
 {
@@ -37,14 +33,15 @@ static void json_time(json *out, const char *key, double time)
     json_number(out, key, time >= 0 ? time : (double)NAN);
 }
 
-static void json_energies(json *out, const run_result *result)
+static void json_ledger(json *out, const ledger_result *result, const mct_scene *scene)
 {
-    json_number(out, "energy", total(&result->energy));
-    json_number(out, "energy_start", total(&result->energy_start));
-    json_object(out, "energies");
-    json_number(out, "kinetic", result->energy.kinetic);
-    json_number(out, "potential", result->energy.potential);
-    json_number(out, "magnetic", result->energy.magnetic);
+    json_object(out, "ledger");
+    json_powers(out, "works", &result->work, scene);
+    json_energies(out, "stepper", &result->of_stepper);
+    json_energies(out, "unexplained", &result->unexplained);
+    json_energies(out, "gain", &result->gain);
+    json_number(out, "size", result->size);
+    json_count(out, "lost_ticks", result->lost_ticks);
     json_end_object(out);
 }
 
@@ -156,7 +153,12 @@ void print_run_json(const run_report *report, FILE *file)
     }
     json_end_object(&out);
     if (result->has_energy) {
-        json_energies(&out, result);
+        json_number(&out, "energy", energy_total(result->energy));
+        json_number(&out, "energy_start", energy_total(result->energy_start));
+        json_energies(&out, "energies", &result->energy);
+    }
+    if (report->options->ledger != NULL) {
+        json_ledger(&out, &report->ledger, scene);
     }
     json_faults(&out, result);
     json_text(&out, "verdict", verdict_name(report->verdict));
@@ -267,14 +269,22 @@ static void print_state(const run_report *report, FILE *file)
 
 static void print_energy(const run_result *result, FILE *file)
 {
-    const energies *end = &result->energy;
-    fprintf(file, "\nEnergy [J]\n  %-16s %14s %14s %14s %14s\n", "", "kinetic", "potential", "magnetic",
-            "total");
-    const energies *const rows[] = {&result->energy_start, end};
-    static const char *const names[] = {"at the start", "at the end"};
-    for (int i = 0; i < 2; i++) {
-        fprintf(file, "  %-16s %14.6g %14.6g %14.6g %14.6g\n", names[i], rows[i]->kinetic, rows[i]->potential,
-                rows[i]->magnetic, total(rows[i]));
+    print_energies_head(file, "Energy [J]");
+    print_energies(file, "at the start", &result->energy_start);
+    print_energies(file, "at the end", &result->energy);
+}
+
+static void print_ledger(const run_report *report, FILE *file)
+{
+    const ledger_result *book = &report->ledger;
+    print_energies_head(file, "Ledger [J]: work of each effect");
+    print_powers(file, &book->work, &report->scene->scene);
+    print_energies(file, "stepper", &book->of_stepper);
+    print_energies(file, "unexplained", &book->unexplained);
+    print_energies(file, "gain", &book->gain);
+    if (book->lost_ticks > 0) {
+        fprintf(file, "  %" PRIu64 " ticks could not be followed; what they gained is left unexplained\n",
+                book->lost_ticks);
     }
 }
 
@@ -473,6 +483,9 @@ void print_run(const run_report *report, FILE *file)
     print_state(report, file);
     if (report->result.has_energy && !is_process(report)) {
         print_energy(&report->result, file);
+    }
+    if (report->options->ledger != NULL) {
+        print_ledger(report, file);
     }
     print_faults(report, file);
     if (report->result.has_can) {

@@ -6,8 +6,10 @@
 #include "mctau/input.h"
 #include "mctau/judge.h"
 #include "mctau/plant.h"
+#include "runner_advise.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
+#include "runner_ledger.h"
 #include "runner_replay.h"
 #include "runner_run.h"
 
@@ -17,13 +19,21 @@ energies runner_energies(const mct_evaluation *at)
         .kinetic = (double)at->kinetic_energy,
         .potential = (double)at->potential_energy,
         .magnetic = (double)at->magnetic_energy,
-        .power_input = (double)at->power_input,
-        .power_viscous = (double)at->power_viscous,
-        .power_coulomb = (double)at->power_coulomb,
-        .power_resistance = (double)at->power_resistance,
-        .power_conversion = (double)at->power_conversion,
-        .power_base = (double)at->power_base,
     };
+}
+
+powers runner_powers(const mct_evaluation *at)
+{
+    powers power = {{
+        [POWER_INPUT] = (double)at->power_input,
+        [POWER_RESISTANCE] = (double)at->power_resistance,
+        [POWER_CONVERSION] = (double)at->power_conversion,
+        [POWER_FRAME] = (double)at->power_frame,
+    }};
+    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
+        power.of[i] = (double)at->power[i];
+    }
+    return power;
 }
 
 /* Input at t = 0, within the plant's bounds. */
@@ -110,6 +120,7 @@ static mct_status runner_mct(const mct_scene *scene, const run_options *options,
     result->current = (double)at.current;
     result->input = (double)plant.input;
     result->energy = runner_energies(&at);
+    result->power = runner_powers(&at);
     return MCT_OK;
 }
 
@@ -122,5 +133,11 @@ const mct_runner MCT_RUNNER = {
     .replay = runner_replay,
     .drive = runner_drive,
     .inputs = runner_inputs,
+    .ledger_begin = ledger_begin,
+    .ledger_tick = ledger_tick,
+    .ledger_end = ledger_end,
     .try = runner_try,
+    .loop = runner_loop,
+    .depart = runner_depart,
+    .time_scale = runner_time_scale,
 };

@@ -17,11 +17,23 @@
 #include "mctau/message.h"
 #include "mctau/scene.h"
 #include "mctau/status.h"
+#include "powers.h"
 
 #define RUNNER_MAX_STATES      16
 #define RUNNER_MAX_COORDINATES 16
 #define RUNNER_MAX_PARTICLES   32
 #define RUNNER_MAX_FAULTS      16
+
+/* Follows a run and keeps its ledger: see docs/ledger.md. */
+typedef struct ledger ledger;
+
+typedef struct {
+    powers work; /* along the exact motion of each tick */
+    energies gain, of_stepper,
+        unexplained;     /* gain = what the works bring to each + of_stepper + unexplained */
+    double size;         /* of all works and energies: what rounding is relative to */
+    uint64_t lost_ticks; /* whose exact motion could not be followed: left unexplained */
+} ledger_result;
 
 /* Where the results of a run go; NULL or "" for nowhere. */
 typedef struct {
@@ -36,13 +48,10 @@ typedef struct {
     void (*started)(
         const struct mct_can_report *report); /* told what the start found on a CAN bus; or NULL */
     bool progress;                            /* show progress on stderr */
+    ledger *
+        ledger; /* told of every tick of a mechanism that is simulated here, by the function of its runner; or NULL */
+    void (*ledger_tick)(ledger *self, const double *value, const double *rest, double input);
 } run_options;
-
-/* Energies [J] and powers [W] at one state. */
-typedef struct {
-    double kinetic, potential, magnetic;
-    double power_input, power_viscous, power_coulomb, power_resistance, power_conversion, power_base;
-} energies;
 
 typedef struct {
     int states;
@@ -122,6 +131,7 @@ typedef struct {
     double current;
     double input; /* as applied */
     energies energy;
+    powers power;
 } mct_result;
 
 /* First difference between a log and its replay. */
@@ -179,6 +189,21 @@ typedef struct {
     double instructions; /* per tick; NaN where nothing counts them */
 } trial;
 
+/* A run that is known. */
+typedef struct {
+    const double *inputs; /* one a tick; NULL: none acts */
+    const double *states; /* as of a trial */
+    int width;            /* of its rows: states of the scene that was run */
+    uint64_t ticks;
+} course;
+
+/* Where two runs differ most, as a part of the state's scale. */
+typedef struct {
+    double size; /* infinite: one of them diverges; NaN: not known */
+    int state;
+    uint64_t tick;
+} departure;
+
 typedef struct {
     const char *precision;
     size_t real_size;
@@ -196,8 +221,27 @@ typedef struct {
     /* Inputs of the first `ticks` ticks: those of [input], or what the controller applies in simulation. */
     mct_status (*inputs)(const mct_scene *scene, const run_options *options, uint64_t ticks, double *inputs,
                          mct_message *why);
+    /* A ledger of a scene's run, which starts at its initial state; ledger_end() frees it. */
+    mct_status (*ledger_begin)(const mct_scene *scene, ledger **self, mct_message *why);
+    /* The state after a tick, in two parts, and the input as applied. The first call is for the start. */
+    void (*ledger_tick)(ledger *self, const double *value, const double *rest, double input);
+    void (*ledger_end)(ledger *self, ledger_result *result);
     /* Follows, times and counts, as the trial asks; the scene's controller and [input] do not act. */
     mct_status (*try)(const mct_scene *scene, trial *asked, mct_message *why);
+    /* Follows a scene with a controller in simulation, in lockstep; `states` and `diverged` as of a trial. */
+    mct_status (*loop)(const mct_scene *scene, uint64_t ticks, double *states, bool *diverged,
+                       mct_message *why);
+    /*
+     * Open loop, to first order: by how much other scenes of the system depart from the run of `scene`, at its inputs.
+     * Compared are coordinates and rates, by their `scale`. found[i] is not known where others[i] cannot be prepared.
+     */
+    mct_status (*depart)(const mct_scene *scene, const course *along, const double *scale,
+                         const mct_scene *others, int count, departure *found, mct_message *why);
+    /*
+     * Of what `with` has and `without` has not [s]: of a current L/R; of a prescribed motion 1 / its angular frequency;
+     * else by how the accelerations that it brings respond to the state. NaN where it has none.
+     */
+    double (*time_scale)(const mct_scene *with, const mct_scene *without, const course *along);
 } mct_runner;
 
 extern const mct_runner mct_runner_f64;

@@ -12,10 +12,18 @@
 #include "mctau/plant.h"
 #include "say.h"
 
-/* --- inputs --- */
+static void write_row(const mct_plant *plant, double *rows)
+{
+    for (int i = 0; i < plant->states; i++) {
+        rows[plant->tick * (uint64_t)plant->states + (uint64_t)i] = mct_plant_value(plant, i);
+    }
+}
 
-/* What the controller applies in a closed loop, in simulation and in lockstep. */
-static mct_status record_loop(const mct_scene *scene, uint64_t ticks, double *inputs, mct_message *why)
+/* --- the closed loop --- */
+
+/* In simulation and in lockstep: what the controller applies, and where the plant goes; NULL: not written. */
+static mct_status follow_loop(const mct_scene *scene, uint64_t ticks, double *inputs, double *states,
+                              bool *diverged, mct_message *why)
 {
     mct_scene simulated = *scene;
     simulated.realtime = 0;
@@ -28,9 +36,18 @@ static mct_status record_loop(const mct_scene *scene, uint64_t ticks, double *in
     status = status != MCT_OK ? status : hal.ops->open(hal.context, why);
     if (status == MCT_OK) {
         for (uint64_t i = 0; i < ticks; i++) {
+            if (states != NULL) {
+                write_row(&sim->plant, states);
+            }
             mct_loop_tick(loop);
-            inputs[i] = (double)loop->record.applied;
+            if (inputs != NULL) {
+                inputs[i] = (double)loop->record.applied;
+            }
         }
+        if (states != NULL) {
+            write_row(&sim->plant, states);
+        }
+        *diverged = sim->plant.diverged_ticks > 0;
         hal.ops->stop(hal.context);
         hal.ops->close(hal.context);
     }
@@ -39,13 +56,23 @@ static mct_status record_loop(const mct_scene *scene, uint64_t ticks, double *in
     return status;
 }
 
+mct_status runner_loop(const mct_scene *scene, uint64_t ticks, double *states, bool *diverged,
+                       mct_message *why)
+{
+    mct_message_clear(why);
+    return follow_loop(scene, ticks, NULL, states, diverged, why);
+}
+
+/* --- inputs --- */
+
 mct_status runner_inputs(const mct_scene *scene, const run_options *options, uint64_t ticks, double *inputs,
                          mct_message *why)
 {
     mct_input open_loop;
     mct_message_clear(why);
     if (scene->controller != MCT_CONTROLLER_NONE) {
-        return record_loop(scene, ticks, inputs, why);
+        bool diverged;
+        return follow_loop(scene, ticks, inputs, NULL, &diverged, why);
     }
     mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});
     for (uint64_t i = 0; i < ticks; i++) {
@@ -66,13 +93,6 @@ static double now_ns(void)
 static void step(mct_plant *plant, const trial *self)
 {
     mct_plant_step(plant, self->inputs != NULL ? (mct_real)self->inputs[plant->tick] : 0);
-}
-
-static void write_row(const mct_plant *plant, double *rows)
-{
-    for (int i = 0; i < plant->states; i++) {
-        rows[plant->tick * (uint64_t)plant->states + (uint64_t)i] = mct_plant_value(plant, i);
-    }
 }
 
 /* The whole run once; ends where it diverges. */

@@ -441,6 +441,21 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
     return MCT_OK;
 }
 
+/* The ledger's next line: the mechanism's state, and what drove it there. */
+static void tell_ledger(const run *self)
+{
+    double value[RUNNER_MAX_STATES], rest[RUNNER_MAX_STATES];
+    const mct_plant *const plant = self->mechanism;
+    if (self->options->ledger == NULL || plant == NULL) {
+        return;
+    }
+    for (int i = 0; i < plant->entries; i++) {
+        value[i] = (double)plant->state.x[i];
+        rest[i] = (double)plant->state.c[i];
+    }
+    self->options->ledger_tick(self->options->ledger, value, rest, (double)plant->input);
+}
+
 static void tick(run *self)
 {
     mct_loop *loop = &self->loop;
@@ -457,6 +472,7 @@ static void tick(run *self)
     }
     mct_loop_tick(loop);
     track_deviation(self, loop->tick);
+    tell_ledger(self);
     const mct_real applied = loop->record.applied;
     self->saturated_ticks += applied >= self->limit || applied <= -self->limit;
     if (loop->record.faults != 0 && self->first_fault == never) {
@@ -474,6 +490,7 @@ static void run_ticks(run *self)
     const volatile int *stop = self->options->stop;
     const bool in_blocks = !self->realtime;
     track_deviation(self, 0);
+    tell_ledger(self);
     while (self->loop.tick < self->ticks && *stop == 0) {
         const uint64_t left = self->ticks - self->loop.tick;
         const uint64_t end = in_blocks && left > BLOCK ? self->loop.tick + BLOCK : self->ticks;

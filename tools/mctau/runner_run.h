@@ -8,7 +8,7 @@
 mct_status runner_run(const mct_scene *scene, const run_options *options, run_result *result,
                       mct_message *why);
 
-/* Energies and powers at a plant's present state. */
 energies runner_energies(const mct_evaluation *at);
+powers runner_powers(const mct_evaluation *at);
 
 #endif

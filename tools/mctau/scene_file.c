@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "csv_input.h"
 #include "say.h"
@@ -180,6 +181,14 @@ void scene_file_note(scene_file *self, const char *key, const char *value)
     const size_t more = sizeof mark + strlen(key) + strlen(value) + 2;
     self->text = need_memory(realloc(self->text, length + more));
     snprintf(self->text + length, more, "%s%s=%s\n", mark, key, value);
+}
+
+bool is_same_file(const char *a, const char *b)
+{
+    struct stat there[2];
+    return a != NULL && b != NULL && stat(a, &there[0]) == 0 && stat(b, &there[1]) == 0 &&
+           S_ISREG(there[0].st_mode) && there[0].st_dev == there[1].st_dev &&
+           there[0].st_ino == there[1].st_ino;
 }
 
 void scene_file_free(scene_file *self)

@@ -2,6 +2,7 @@
 #ifndef MCTAU_TOOLS_SCENE_FILE_H
 #define MCTAU_TOOLS_SCENE_FILE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "mctau/scene.h"
@@ -28,6 +29,9 @@ int scene_file_read(scene_file *self, const arguments *given);
 void scene_file_note(scene_file *self, const char *key, const char *value);
 
 void scene_file_free(scene_file *self);
+
+/* Whether two paths are one regular file; either may be NULL. */
+bool is_same_file(const char *a, const char *b);
 
 /* Runner of a precision, NULL when this build has not got it. */
 const mct_runner *find_runner(int precision);

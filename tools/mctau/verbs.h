@@ -11,5 +11,6 @@ extern const verb verb_replay;
 extern const verb verb_drive;
 extern const verb verb_cost;
 extern const verb verb_pick;
+extern const verb verb_advise;
 
 #endif

@@ -210,7 +210,7 @@ def input_(run, **options):
     if run.table["wanted"] != run.table["applied"]:
         plot.line(run.time, run.table["wanted"], "wanted", "wanted")
     plot.line(run.time, run.table["applied"], "true", "applied")
-    if run.scene.has_motor and run.scene("effects", "saturation") in (True, "true"):
+    if run.scene.has_motor and run.scene("effects", "saturation") not in (False, "false", "off"):
         supply = float(run.scene("parameters", "supply_voltage"))
         plot.levels((-supply, supply), "limit", "supply")
     return plot

@@ -214,6 +214,21 @@ def fault_table(run):
     )
 
 
+def ledger_table(run):
+    """Of a run with --ledger."""
+    if "ledger" not in run.result:
+        return ""
+    ledger = run.result["ledger"]
+    entries = {words(name): work for name, work in ledger["works"].items()}
+    entries |= {name: sum(ledger[name].values()) for name in ("stepper", "unexplained")}
+    rows = "".join(f'<tr><td>{name}<td class="n">{value:.6g}' for name, value in entries.items())
+    return (
+        '<h2>Where the energy came from</h2><p class="note">The work of each effect, and what the stepper added; what '
+        'each means: docs/ledger.md.</p><div class="scroll"><table>'
+        f"<tr><th>entry<th>work [J]{rows}</table></div>"
+    )
+
+
 def final_state(run):
     rows = "".join(
         f'<tr><td>{name}<td class="n">{run.result["state"][name]!r}<td class="n">'
@@ -254,6 +269,7 @@ def page(run):
 {fault_table(run)}
 {pictures(run)}
 <h2>Over time</h2><p class="note">{mode_key(run)}</p>{varied}{panels}
+{ledger_table(run)}
 {final_state(run)}
 <h2>Scene</h2><pre>{html.escape(run.scene.text.rstrip() + sets)}</pre>
 <h2>How to run it again</h2><pre>{html.escape(command_lines(run))}</pre>
