@@ -319,11 +319,12 @@ class Deleter:
     def files(self, texts):
         """Texts by their names, with the effects deleted from each."""
         files = self.with_clones({name: tokens_of(text) for name, text in texts.items()})
+        always = zeros(files)
         known = None
         while known != len(self.constant):  # what is constant may make another so
             known = len(self.constant)
             files = {name: with_bodies(tokens, self.body) for name, tokens in files.items()}
-        self.zeros = zeros(files)
+        self.zeros = zeros(files) - always
         return {name: text_of(with_bodies(tokens, self.marked)) for name, tokens in files.items()}
 
     def with_clones(self, files):
@@ -375,10 +376,10 @@ class Deleter:
                        for name in sorted(self.zeros))
 
     def left(self, text):
-        """Functions in a text from which the effects should be gone that test them still; kernel() chooses among kernels."""
+        """Functions in a text from which the effects should be gone that test them still, but for those that choose kernels."""
         found, tokens = [], tokens_of(text)
         for name, start, end in functions(tokens):
-            if name != "kernel" and not name.endswith(AS_GIVEN):
+            if "kernel" not in name and not name.endswith(AS_GIVEN):
                 body = tokens[start:end]
                 tests = (body[i + 2 : i + 8] for i in range(len(body)) if body[i : i + 2] == ["effects", "&"])
                 if any(self.names.intersection(test) for test in tests):

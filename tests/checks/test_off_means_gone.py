@@ -1,8 +1,9 @@
 """Off means gone: a kernel is that of a source in which the effects that it lacks had never been written.
 
-For each set of effects that a system has kernels for, all other effects are deleted from the text of its source
+For sets of effects that a system has kernels for, all other effects are deleted from the text of its source
 (deletion.py: tests of them, dead branches, operands, what only they read), and what is left is compiled as the library
-was. Held against the library's own object files, kernel by kernel, all of them, in double precision:
+was: for all sets of a system, or, where they are many, for those that have one effect at most or lack one at most. Held
+against the library's own object files, kernel by kernel, by every stepper, in double precision:
 
 - the floating-point operations, with those of the functions called: each as often, in every kernel (SPARE has the few
   where the compiler copies a path more or less);
@@ -15,7 +16,6 @@ text with fewer of them has other spills. How many moves that are is bounded for
 Effects that act outside kernels, saturation and sensors, leave no instruction there: no kernel's text names them.
 """
 
-import collections
 import os
 import shlex
 import shutil
@@ -38,6 +38,7 @@ SPARE = {
 # between them, and steps close to the pivot, which are rare.
 ONE_FOR_ALL = {"expand", "locate_events", "rare_rk4", "rare_taylor"}
 WITHIN_ONE_FOR_ALL = 0.3
+MANY = 40  # sets: those of a system with a motor, each of which takes a second to compile
 COUNTED = ("rk4", "expo")  # the steppers that run, of systems that have them
 
 
@@ -61,12 +62,15 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def found(build, source, folder):
-    """The library's kernels, but of systems without effects."""
+    """Those of the library's kernels that are compared; a system without effects has none."""
+    found = []
     every = gone.all_kernels(build, source, folder)
-    most = collections.Counter()
-    for one in every:
-        most[one.system] |= one.effects
-    return [one for one in every if most[one.system]]
+    for system in dict.fromkeys(one.system for one in every):
+        own = [one for one in every if one.system == system]
+        sets = {one.effects for one in own}
+        most = max(effects.bit_count() for effects in sets)
+        found += [one for one in own if most and (len(sets) <= MANY or not 1 < one.effects.bit_count() < most - 1)]
+    return found
 
 
 @pytest.fixture(scope="module")
