@@ -432,7 +432,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     if (effects & MCT_EULER_FORCE) {
         out->power[MCT_EFFECT_EULER] = -k->mass * mct_dot(euler, x + N);
     }
-    out->power_frame = mct_dot(missing, z) - (out->power[MCT_EFFECT_CENTRIFUGAL] + out->power[MCT_EFFECT_EULER]);
+    out->power_frame =
+        mct_dot(missing, z) - (out->power[MCT_EFFECT_CENTRIFUGAL] + out->power[MCT_EFFECT_EULER]);
 }
 
 static mct_hyperdual product(mct_hyperdual a, mct_hyperdual b)
