@@ -13,34 +13,30 @@
 
 /* --- A system with a motor --- */
 
-#define MCT_MOTOR_KERNELS 72
-/* The place of an effect set in its tables: by weight and viscous friction, dry friction, drag and motor. */
-#define MCT_MOTOR_PLACE(effects)                                                             \
-    (((effects) & 3u) +                                                                      \
-     4u * (((effects) & MCT_COULOMB_MOREAU) ? 1u : ((effects) & MCT_COULOMB_EXACT) ? 2u : 0u) + \
-     12u * (((effects) & MCT_DRAG) ? 1u : 0u) + 3u * ((effects) & MCT_MOTOR))
+/* Its tables have 24 places for each kind of motor, in fours of neither, gravity, viscous friction and both: without more;
+ * with dry friction by Moreau, with it exact; then the same three with drag. */
+#define MCT_MOTOR_KERNELS (3 * 24)
 
-/* Sets of a stepper beside its motor, by their masks in digits, which names are made of: what is smooth; dry friction by
- * Moreau; drag with it and without; exact dry friction with drag and without. */
-#define MCT_SMOOTH_SETS(each, ...) each(__VA_ARGS__, 0, 1, 2, 3)
-#define MCT_DRY_SETS(each, ...)    MCT_SMOOTH_SETS(each, __VA_ARGS__) each(__VA_ARGS__, 4, 5, 6, 7)
-#define MCT_ALL_SETS(each, ...)        \
-    MCT_DRY_SETS(each, __VA_ARGS__)    \
-    each(__VA_ARGS__, 64, 65, 66, 67)  \
-    each(__VA_ARGS__, 68, 69, 70, 71)
-#define MCT_EXACT_SETS(each, ...)                 \
-    MCT_SMOOTH_SETS(each, __VA_ARGS__)             \
-    each(__VA_ARGS__, 65536, 65537, 65538, 65539)  \
-    each(__VA_ARGS__, 65600, 65601, 65602, 65603)
+/* Sets of a stepper beside its motor, by their masks in digits, which names are made of; `none` of the others. */
+#define MCT_SMOOTH_SETS(each, none, ...) each(__VA_ARGS__, 0, 1, 2, 3) none none none none none
+#define MCT_DRY_SETS(each, none, ...) \
+    each(__VA_ARGS__, 0, 1, 2, 3) each(__VA_ARGS__, 4, 5, 6, 7) none none none none
+#define MCT_ALL_SETS(each, none, ...)                                                                  \
+    each(__VA_ARGS__, 0, 1, 2, 3) each(__VA_ARGS__, 4, 5, 6, 7) none each(__VA_ARGS__, 64, 65, 66, 67) \
+        each(__VA_ARGS__, 68, 69, 70, 71) none
+#define MCT_EXACT_SETS(each, none, ...)                                                              \
+    each(__VA_ARGS__, 0, 1, 2, 3) none each(__VA_ARGS__, 65536, 65537, 65538, 65539) none none each( \
+        __VA_ARGS__, 65600, 65601, 65602, 65603)
 
-/* Kernels of a stepper for these sets and each kind of motor, whose bit is a literal; the others are empty. */
-#define MCT_STEPPER_KERNELS(SETS, stepper, remainder, expression)       \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                          \
-    SETS(MCT_FOUR, stepper, remainder, 0)                               \
-    SETS(MCT_FOUR, stepper, remainder, 8)                               \
-    SETS(MCT_FOUR, stepper, remainder, 16)                              \
-    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {    \
-        SETS(MCT_FOUR_NAMES, stepper, 0) SETS(MCT_FOUR_NAMES, stepper, 8) SETS(MCT_FOUR_NAMES, stepper, 16)};
+/* Kernels of a stepper for these sets and each kind of motor, whose bit is a literal. */
+#define MCT_STEPPER_KERNELS(SETS, stepper, remainder, expression)                                     \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                                        \
+    SETS(MCT_FOUR, , stepper, remainder, 0)                                                           \
+    SETS(MCT_FOUR, , stepper, remainder, 8)                                                           \
+    SETS(MCT_FOUR, , stepper, remainder, 16)                                                          \
+    static const mct_kernel stepper##_kernels[MCT_MOTOR_KERNELS] = {                                  \
+        SETS(MCT_FOUR_NAMES, MCT_NO_NAMES, stepper, 0) SETS(MCT_FOUR_NAMES, MCT_NO_NAMES, stepper, 8) \
+            SETS(MCT_FOUR_NAMES, MCT_NO_NAMES, stepper, 16)};
 
 #define MCT_FOUR(stepper, remainder, motor, a, b, c, d) \
     MCT_KERNEL(stepper, remainder, motor, a)            \
@@ -48,11 +44,9 @@
     MCT_KERNEL(stepper, remainder, motor, c)            \
     MCT_KERNEL(stepper, remainder, motor, d)
 
-#define MCT_FOUR_NAMES(stepper, motor, a, b, c, d)                         \
-    MCT_KERNEL_NAME(stepper, motor, a), MCT_KERNEL_NAME(stepper, motor, b), \
-        MCT_KERNEL_NAME(stepper, motor, c), MCT_KERNEL_NAME(stepper, motor, d),
-#define MCT_KERNEL_NAME(stepper, motor, others) \
-    [MCT_MOTOR_PLACE((motor) + (others))] = stepper##_##motor##_##others
+#define MCT_FOUR_NAMES(stepper, motor, a, b, c, d) \
+    stepper##_##motor##_##a, stepper##_##motor##_##b, stepper##_##motor##_##c, stepper##_##motor##_##d,
+#define MCT_NO_NAMES NULL, NULL, NULL, NULL,
 
 #define MCT_KERNEL(stepper, remainder, motor, others)                                                   \
     static void stepper##_##motor##_##others(const void *constants, mct_state *state, mct_real u,       \
@@ -67,8 +61,12 @@
 static inline mct_kernel mct_kernel_of(const mct_kernel *const *kernels, int stepper, uint32_t effects)
 {
     const mct_kernel *row = kernels[stepper];
-    const bool is_one = (effects & MCT_MOTOR) != MCT_MOTOR && (effects & MCT_COULOMB) != MCT_COULOMB;
-    return row == NULL || !is_one ? NULL : row[MCT_MOTOR_PLACE(effects)];
+    if (row == NULL || (effects & MCT_MOTOR) == MCT_MOTOR || (effects & MCT_COULOMB) == MCT_COULOMB) {
+        return NULL;
+    }
+    const uint32_t dry = (effects & MCT_COULOMB_EXACT) ? 8 : effects & MCT_COULOMB_MOREAU; /* which is 4 */
+    return row[3 * (effects & MCT_MOTOR) + ((effects & MCT_DRAG) ? 12 : 0) + dry +
+               (effects & (MCT_GRAVITY | MCT_VISCOUS))];
 }
 
 /* Bits of the mask of all kernels of a system without a motor, defined by the including file. */
@@ -192,42 +190,40 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
     static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_OCTET_NAMES(stepper, s)};
 
 #define MCT_SMOOTH_KERNELS_4(...) MCT_SMOOTH_KERNELS_4_OF(__VA_ARGS__)
-#define MCT_SMOOTH_KERNELS_4_OF(stepper, remainder, n, count, A, B, C, D, expression) \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                        \
-    MCT_OCTET(stepper, remainder, n, s0, 0, A, B, C)                                  \
-    MCT_OCTET(stepper, remainder, n, s1, D, A, B, C)                                  \
+#define MCT_SMOOTH_KERNELS_4_OF(stepper, remainder, n, count, A, B, C, D, expression)        \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                                               \
+    MCT_OCTET(stepper, remainder, n, s0, 0, A, B, C)                                         \
+    MCT_OCTET(stepper, remainder, n, s1, D, A, B, C)                                         \
     static const mct_kernel stepper##_kernels[1 << (count)] = {MCT_OCTET_NAMES(stepper, s0), \
                                                                MCT_OCTET_NAMES(stepper, s1)};
 
 /* Of three switches and dry friction, none, by Moreau and exact, which are the fourth and fifth. */
 #define MCT_DRY_KERNELS_3(...) MCT_DRY_KERNELS_3_OF(__VA_ARGS__)
-#define MCT_DRY_KERNELS_3_OF(stepper, remainder, n, A, B, C, expression)        \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                                  \
-    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                             \
-    MCT_OCTET(stepper, remainder, n, m, MCT_COULOMB_MOREAU, A, B, C)            \
-    MCT_OCTET(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B, C)             \
-    static const mct_kernel stepper##_kernels[32] = {MCT_OCTET_NAMES(stepper, s), \
-                                                     MCT_OCTET_NAMES(stepper, m), \
-                                                     MCT_OCTET_NAMES(stepper, e)};
+#define MCT_DRY_KERNELS_3_OF(stepper, remainder, n, A, B, C, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                           \
+    MCT_OCTET(stepper, remainder, n, s, 0, A, B, C)                      \
+    MCT_OCTET(stepper, remainder, n, m, MCT_COULOMB_MOREAU, A, B, C)     \
+    MCT_OCTET(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B, C)      \
+    static const mct_kernel stepper##_kernels[32] = {                    \
+        MCT_OCTET_NAMES(stepper, s), MCT_OCTET_NAMES(stepper, m), MCT_OCTET_NAMES(stepper, e)};
 
 /*
  * Of a series that knows exact friction: two switches A and B, then dry friction by Moreau, drag and exact dry friction,
  * of which drag suits with the last alone, and not every system.
  */
-#define MCT_EXACT_KERNELS(stepper, remainder, n, A, B, expression)        \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                            \
-    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                           \
-    MCT_QUAD(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B)           \
-    static const mct_kernel stepper##_kernels[32] = {MCT_QUAD_NAMES(stepper, s), \
-                                                     [16] = MCT_QUAD_NAMES(stepper, e)};
-#define MCT_EXACT_DRAG_KERNELS(stepper, remainder, n, A, B, expression)      \
-    MCT_SWITCH_INCREMENTS(stepper, expression)                               \
-    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                              \
-    MCT_QUAD(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B)              \
-    MCT_QUAD(stepper, remainder, n, d, MCT_COULOMB_EXACT | MCT_DRAG, A, B)   \
-    static const mct_kernel stepper##_kernels[32] = {MCT_QUAD_NAMES(stepper, s), \
-                                                     [16] = MCT_QUAD_NAMES(stepper, e), \
-                                                     [24] = MCT_QUAD_NAMES(stepper, d)};
+#define MCT_EXACT_KERNELS(stepper, remainder, n, A, B, expression) \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                     \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                    \
+    MCT_QUAD(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B)    \
+    static const mct_kernel stepper##_kernels[32] = {              \
+        MCT_QUAD_NAMES(stepper, s), [16] = MCT_QUAD_NAMES(stepper, e)};
+#define MCT_EXACT_DRAG_KERNELS(stepper, remainder, n, A, B, expression)    \
+    MCT_SWITCH_INCREMENTS(stepper, expression)                             \
+    MCT_QUAD(stepper, remainder, n, s, 0, A, B)                            \
+    MCT_QUAD(stepper, remainder, n, e, MCT_COULOMB_EXACT, A, B)            \
+    MCT_QUAD(stepper, remainder, n, d, MCT_COULOMB_EXACT | MCT_DRAG, A, B) \
+    static const mct_kernel stepper##_kernels[32] = {                      \
+        MCT_QUAD_NAMES(stepper, s), [16] = MCT_QUAD_NAMES(stepper, e), [24] = MCT_QUAD_NAMES(stepper, d)};
 
 /* --- Taylor's method: the including file's step, taylor(constants, effects, order, x, u, dx), by literal orders --- */
 
@@ -239,17 +235,17 @@ MCT_INLINE void mct_no_friction(const void *constants, unsigned effects, const m
     MCT_TAYLOR_OF_ORDER(KERNELS, 8, __VA_ARGS__) \
     MCT_TAYLOR_OF_ORDER(KERNELS, 12, __VA_ARGS__)
 /* Of a system with a motor; exact dry friction by one order alone, for these kernels are large. */
-#define MCT_TAYLOR_MOTOR_KERNELS(remainder)                        \
-    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 4, remainder)    \
-    MCT_TAYLOR_OF_ORDER(MCT_EXACT_MOTOR_KERNELS, 6, remainder)     \
-    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 8, remainder)    \
+#define MCT_TAYLOR_MOTOR_KERNELS(remainder)                     \
+    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 4, remainder) \
+    MCT_TAYLOR_OF_ORDER(MCT_EXACT_MOTOR_KERNELS, 6, remainder)  \
+    MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 8, remainder) \
     MCT_TAYLOR_OF_ORDER(MCT_SMOOTH_MOTOR_KERNELS, 12, remainder)
 #define MCT_SMOOTH_MOTOR_KERNELS(...) MCT_STEPPER_KERNELS(MCT_SMOOTH_SETS, __VA_ARGS__)
 #define MCT_EXACT_MOTOR_KERNELS(...)  MCT_STEPPER_KERNELS(MCT_EXACT_SETS, __VA_ARGS__)
-#define MCT_TAYLOR_EXACT(...)               MCT_TAYLOR(MCT_EXACT_KERNELS, __VA_ARGS__)
-#define MCT_TAYLOR_EXACT_DRAG(...)          MCT_TAYLOR(MCT_EXACT_DRAG_KERNELS, __VA_ARGS__)
-#define MCT_TAYLOR_KERNELS_2(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_2, __VA_ARGS__)
-#define MCT_TAYLOR_KERNELS_3(...)           MCT_TAYLOR(MCT_SMOOTH_KERNELS_3, __VA_ARGS__)
+#define MCT_TAYLOR_EXACT(...)         MCT_TAYLOR(MCT_EXACT_KERNELS, __VA_ARGS__)
+#define MCT_TAYLOR_EXACT_DRAG(...)    MCT_TAYLOR(MCT_EXACT_DRAG_KERNELS, __VA_ARGS__)
+#define MCT_TAYLOR_KERNELS_2(...)     MCT_TAYLOR(MCT_SMOOTH_KERNELS_2, __VA_ARGS__)
+#define MCT_TAYLOR_KERNELS_3(...)     MCT_TAYLOR(MCT_SMOOTH_KERNELS_3, __VA_ARGS__)
 
 /* Their rows in the table of a system's kernels. */
 #define MCT_TAYLOR_ROWS                                                               \

@@ -166,10 +166,31 @@ static void test_losses_take_and_what_acts_across_a_velocity_does_not_work(void)
     }
 }
 
+/* In the frame they are all that C v is made of; what is left out of them is no part of it. */
+static void test_apparent_forces_work_as_they_do_in_the_frame(void)
+{
+    for (int number = 0; number < MCT_SYSTEM_COUNT; number++) {
+        const mct_system *system = mct_systems[number];
+        test_random random = {11};
+        for (int trial = 0; trial < TRIALS && system->is_timed; trial++) {
+            TEST_ASSERT_TRUE(draw_scene(&random, number, 0, &scene, &constants, x));
+            x[mct_state_count(&scene)] = random_in(&random, 0, 3);
+            system->evaluate(&constants, mct_scene_effects(&scene), x, 0, &at);
+            double work = at.power[MCT_EFFECT_CENTRIFUGAL] + at.power[MCT_EFFECT_EULER], size = fabs(work);
+            for (int i = 0; i < system->coordinate_count; i++) {
+                work += at.Cv[i] * x[mct_rate_index(system) + i];
+                size += fabs(at.Cv[i] * x[mct_rate_index(system) + i]);
+            }
+            TEST_ASSERT_TRUE(fabs(work) <= 16 * MCT_REAL_EPSILON * size); /* of some ten terms */
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_energies_change_by_the_powers_of_the_effects);
+    RUN_TEST(test_apparent_forces_work_as_they_do_in_the_frame);
     RUN_TEST(test_losses_take_and_what_acts_across_a_velocity_does_not_work);
     return UNITY_END();
 }
