@@ -13,15 +13,15 @@
  *               part of e.
  * Steppers      all with Moreau's clamp (effects/friction1.h, with mu_s at rest): first order where the block starts or
  *               stops. expo: between such events the motion is linear, so its series in time is summed to rounding;
- *               with exact friction the events are located within the step (effects/friction_exact.h): exact,
+ *               with exact friction the events are located within the step (steppers/friction_exact.h): exact,
  *               however large the step.
  * Validity      mu_s >= mu_d; the block does not leave the plane or tip. Spring and sine turn at most 1 rad a
  *               step.
  */
 #include "mctau/block.h"
 
-#include "../effects/friction_exact.h"
 #include "../steppers/euler.h"
+#include "../steppers/friction_exact.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/rk4_plain.h"

@@ -20,9 +20,9 @@
 #include "mctau/cart_pole.h"
 
 #include "../effects/friction.h"
-#include "../effects/friction_exact.h"
 #include "../effects/motor.h"
 #include "../steppers/euler.h"
+#include "../steppers/friction_exact.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"

@@ -10,8 +10,8 @@
 #define MCT_SYSTEMS_HINGE_H
 
 #include "../effects/friction1.h"
-#include "../effects/friction_exact.h"
 #include "../steppers/euler.h"
+#include "../steppers/friction_exact.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/rkn6.h"

@@ -21,10 +21,10 @@
 #include "mctau/reaction_wheel.h"
 
 #include "../effects/friction.h"
-#include "../effects/friction_exact.h"
 #include "../effects/motor.h"
 #include "../steppers/euler.h"
 #include "../steppers/expo.h"
+#include "../steppers/friction_exact.h"
 #include "../steppers/leap.h"
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"

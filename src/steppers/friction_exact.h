@@ -16,10 +16,10 @@
  *
  * Most steps have no event: that none can come is seen from the sizes of the terms. The rest is friction_exact.c.
  */
-#ifndef MCT_EFFECTS_FRICTION_EXACT_H
-#define MCT_EFFECTS_FRICTION_EXACT_H
+#ifndef MCT_STEPPERS_FRICTION_EXACT_H
+#define MCT_STEPPERS_FRICTION_EXACT_H
 
-#include "../steppers/taylor.h"
+#include "taylor.h"
 
 #define MCT_FRICTION_PHASES 6
 
