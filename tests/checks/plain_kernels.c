@@ -293,13 +293,13 @@ MCT_INLINE void rk4(cart_pole_rates rates, int states, const mct_cart_pole_const
     store(states, x, c, state);
 }
 
-/* With dry friction: the impulse that it has at the middle of the step, by M there. */
+/* With dry friction: the impulse that it has at the middle of the step, by M where the pole then is. */
 MCT_INLINE void cart_pole_friction(const mct_cart_pole_constants *k, const mct_real *x, mct_real s0,
                                    mct_real c0, mct_real *dx)
 {
     mct_real s, c;
-    const mct_real middle = x[1] + MCT_R(0.5) * dx[1];
-    mct_sincos_near(middle, middle - x[1], s0, c0, &s, &c);
+    const mct_real turned = k->step.half * x[3];
+    mct_sincos_near(x[1] + turned, turned, s0, c0, &s, &c);
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     const mct_inertia2 inertia = {{k->total_mass, k->moment * c, k->inertia},
                                   {inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia}};
