@@ -15,9 +15,13 @@
 typedef void (*mct_derivative_at)(const void *constants, unsigned effects, const mct_real *x, mct_real sine,
                                   mct_real cosine, mct_real u, mct_real *dx);
 
-/* `angle` is the index of the coordinate whose sine and cosine the derivative wants. */
-MCT_INLINE void mct_rk4(mct_derivative_at derivative, int angle, const void *constants, mct_step step,
-                        unsigned effects, int n, const mct_real *x, mct_real u, mct_real *dx)
+/*
+ * `angle` is the index of the coordinate whose sine and cosine the derivative wants. middle: those of the second stage,
+ * half a step ahead at the rate of the start (out).
+ */
+MCT_INLINE void mct_rk4_by_middle(mct_derivative_at derivative, int angle, const void *constants,
+                                  mct_step step, unsigned effects, int n, const mct_real *x, mct_real u,
+                                  mct_real *dx, mct_real *middle)
 {
     const int states = mct_entries(effects, n);
     mct_real k1[MCT_MAX_STATES], k2[MCT_MAX_STATES], k3[MCT_MAX_STATES], k4[MCT_MAX_STATES],
@@ -30,6 +34,8 @@ MCT_INLINE void mct_rk4(mct_derivative_at derivative, int angle, const void *con
         stage[i] = x[i] + step.half * k1[i];
     }
     mct_sincos_near(stage[angle], step.half * k1[angle], s0, c0, &s, &c);
+    middle[0] = s;
+    middle[1] = c;
     derivative(constants, effects, stage, s, c, u, k2);
     MCT_UNROLL
     for (int i = 0; i < states; i++) {
@@ -47,6 +53,13 @@ MCT_INLINE void mct_rk4(mct_derivative_at derivative, int angle, const void *con
     for (int i = 0; i < states; i++) {
         dx[i] = step.sixth * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]);
     }
+}
+
+MCT_INLINE void mct_rk4(mct_derivative_at derivative, int angle, const void *constants, mct_step step,
+                        unsigned effects, int n, const mct_real *x, mct_real u, mct_real *dx)
+{
+    mct_real middle[2];
+    mct_rk4_by_middle(derivative, angle, constants, step, effects, n, x, u, dx, middle);
 }
 
 #endif

@@ -478,7 +478,7 @@ MCT_INLINE void slide(const constants_t *k, unsigned effects, mct_real s, mct_re
     }
 }
 
-/* From the sine at the start, which the stepper has taken, too; */
+/* From the sine at the start, which the stepper has taken, too. */
 MCT_INLINE void slide_from_start(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
 {
     const mct_real turned = k->step.half * x[3];
@@ -488,12 +488,21 @@ MCT_INLINE void slide_from_start(const constants_t *k, unsigned effects, const m
     slide(k, effects, s, c, x, dx);
 }
 
-/* and `leap`, which has taken that of the middle. */
+/* `leap` has taken that of the middle, */
 MCT_INLINE void slide_from_middle(const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
 {
     mct_real s, c;
     mct_sincos(x[1] + k->step.half * x[3], &s, &c);
     slide(k, effects, s, c, x, dx);
+}
+
+/* and so has `rk4`. */
+MCT_INLINE void runge_kutta(const constants_t *k, unsigned effects, const mct_real *x, mct_real u,
+                            mct_real *dx)
+{
+    mct_real middle[2];
+    mct_rk4_by_middle(derivative_at, 1, k, k->step, effects, 2, x, u, dx, middle);
+    slide(k, effects, middle[0], middle[1], x, dx);
 }
 
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
@@ -627,9 +636,7 @@ MCT_STEPPER_KERNELS(MCT_ALL_SETS, euler, k->step.remainder,
 MCT_STEPPER_KERNELS(MCT_ALL_SETS, leap, k->step.remainder,
                     (mct_leap(kick_symmetric, k, k->step, effects, 2, x, u, dx),
                      slide_from_middle(k, effects, x, dx)))
-MCT_STEPPER_KERNELS(MCT_ALL_SETS, rk4, k->step.sixth_remainder,
-                    (mct_rk4(derivative_at, 1, k, k->step, effects, 2, x, u, dx),
-                     slide_from_start(k, effects, x, dx)))
+MCT_STEPPER_KERNELS(MCT_ALL_SETS, rk4, k->step.sixth_remainder, runge_kutta(k, effects, x, u, dx))
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 
 static mct_kernel kernel(int stepper, uint32_t effects)
