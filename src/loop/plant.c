@@ -189,7 +189,8 @@ static mct_real within_current(const mct_plant *plant, mct_real voltage)
     const mct_motor *motor = actuation->motor(&plant->constants);
     const int rate = plant->system->coordinate_count + actuation->driven_coordinate;
     const mct_real emf = motor->emf * plant->state.x[rate];
-    return emf + mct_clamp(voltage - emf, plant->drop);
+    const mct_real drop = voltage - emf;
+    return drop > plant->drop ? emf + plant->drop : drop < -plant->drop ? emf - plant->drop : voltage;
 }
 
 void mct_plant_step(mct_plant *plant, mct_real input)

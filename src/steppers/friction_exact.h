@@ -76,7 +76,7 @@ MCT_INLINE mct_real mct_friction_size(mct_real value)
 static inline bool mct_friction_within(const mct_real *series, int first, int last, mct_real margin)
 {
     mct_real sum = 0;
-    for (int n = last; n >= first; n--) {
+    for (int n = first; n <= last; n++) { /* the newest last */
         sum += mct_friction_size(series[n]);
     }
     return sum <= margin;
@@ -115,7 +115,7 @@ MCT_INLINE void mct_friction_exact(mct_phase_series series, const void *constant
     for (int i = 0; i < n + rows; i++) {
         dx[i] = 0;
     }
-    for (int number = 1;; number++) {
+    for (int number = 1; number <= MCT_FRICTION_PHASES; number++) {
         mct_real now[MCT_MAX_STATES], required[MCT_MAX_ENCODERS];
         mct_real *const direction = phase.mode.direction;
         MCT_UNROLL

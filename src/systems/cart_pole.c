@@ -166,12 +166,12 @@ MCT_INLINE mct_real drag_of(const constants_t *k, int i, mct_real rate)
 }
 
 /* a = M^-1 (f1, f2), where f is tau - C v. */
-MCT_INLINE void solve(const constants_t *k, unsigned effects, mct_real s, mct_real c, mct_real f1,
+MCT_INLINE void solve(const constants_t *k, bool pole_loaded, mct_real s, mct_real c, mct_real f1,
                       mct_real f2, mct_real *a)
 {
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     const mct_real c_over_l = c * k->inverse_length;
-    if (!is_pole_loaded(effects)) {
+    if (!pole_loaded) {
         a[0] = inverse * f1;
         a[1] = -inverse * (c_over_l * f1);
         return;
@@ -204,7 +204,7 @@ MCT_INLINE void derivative_at(const void *constants, unsigned effects, const mct
     }
     dx[0] = pd;
     dx[1] = thd;
-    solve(k, effects, s, c, f1, f2, dx + 2);
+    solve(k, is_pole_loaded(effects), s, c, f1, f2, dx + 2);
     if (effects & MCT_MOTOR_INDUCTIVE) {
         dx[4] = mct_motor_current_rate(&k->motor, u, pd, current);
     }
@@ -356,8 +356,8 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
         current[0] = x[4];
     }
     mct_real to_v[2], to_w[2]; /* by a unit of impulse on cart and pole */
-    solve(k, MCT_GRAVITY, s[0], c[0], 1, 0, to_v);
-    solve(k, MCT_GRAVITY, s[0], c[0], 0, 1, to_w);
+    solve(k, true, s[0], c[0], 1, 0, to_v);
+    solve(k, true, s[0], c[0], 0, 1, to_w);
     mct_real against[2] = {0, 0}; /* dynamic friction */
     mct_real drag[2] = {0, 0};
     if (effects & MCT_COULOMB_EXACT) {
@@ -459,7 +459,7 @@ static void motion(const void *constants, uint32_t effects, const mct_state *sta
     mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
 }
 
-static mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
+MCT_INLINE mct_inertia2 inertia_at(const constants_t *k, mct_real s, mct_real c)
 {
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     return (mct_inertia2){{k->total_mass, k->moment * c, k->inertia},
@@ -535,7 +535,7 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     mct_real dry[2];
     const mct_inertia2 inertia = inertia_at(k, s, c);
     mct_friction_force(&inertia, k->coulomb, k->hold, x + 2, smooth, dry);
-    solve(k, MCT_KERNEL_EFFECTS, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
+    solve(k, true, s, c, smooth[0] + dry[0], smooth[1] + dry[1], out->acceleration);
     out->tau[0] = drive + cart_viscous + cart_drag + dry[0];
     out->tau[1] = k->weight_moment * s + pole_viscous + pole_drag + dry[1];
 
@@ -575,7 +575,7 @@ static void accelerate(const void *constants, uint32_t effects, const mct_real *
     mct_sincos(x[1], &s, &c);
     const mct_real cart_damping = k->cart_viscous + drag_of(k, 0, x[2]);
     const mct_real pole_damping = k->pole_viscous + drag_of(k, 1, thd);
-    solve(k, MCT_KERNEL_EFFECTS, s, c, force - cart_damping * x[2] + k->moment * s * thd * thd,
+    solve(k, true, s, c, force - cart_damping * x[2] + k->moment * s * thd * thd,
           k->weight_moment * s - pole_damping * thd, a);
 }
 

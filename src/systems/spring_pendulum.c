@@ -132,7 +132,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->mass = (mct_real)m;
     k->inverse_mass = (mct_real)(1 / m);
     k->stiffness = (mct_real)stiffness;
-    k->rest_length = (mct_real)p[REST_LENGTH];
+    k->rest_length = (mct_real)((scene->effects & MCT_SPRING) ? p[REST_LENGTH] : 0);
     k->length_viscous = (mct_real)length_viscous;
     k->angle_viscous = (mct_real)angle_viscous;
     k->gravity = (mct_real)((scene->effects & MCT_GRAVITY) ? p[GRAVITY] : 0);

@@ -33,7 +33,6 @@ SPARE = {
     ("rotating_frame", "rk4"): 18,
     ("falling_sphere", "expo"): 1,
     ("reaction_wheel", "euler"): 2,
-    ("cart_pole", "leap"): 4,  # inertia_at is called, and computes again what in its place is known
 }
 # Compiled once for all sets of effects, and asking for them as they run: steps close to the pivot, which are rare.
 ONE_FOR_ALL = {"rare_rk4", "rare_taylor"}
