@@ -248,18 +248,21 @@ MCT_INLINE void dragged_level(const mct_cart_pole_constants *k, const mct_real *
     current_rate(k, x, voltage, dx);
 }
 
-/* The increments of one step, from a state whose sine and cosine these are. */
+/* The increments of one step; middle: sine and cosine half a step ahead, at the rate of the start. */
 MCT_INLINE void rk4_step(cart_pole_rates rates, int states, const mct_cart_pole_constants *k,
-                         const mct_real *x, mct_real s0, mct_real c0, mct_real input, mct_real *dx)
+                         const mct_real *x, mct_real input, mct_real *dx, mct_real *middle)
 {
     const mct_step step = k->step;
-    mct_real k1[5], k2[5], k3[5], k4[5], stage[5], sine, cosine;
+    mct_real k1[5], k2[5], k3[5], k4[5], stage[5], s0, c0, sine, cosine;
+    mct_sincos(x[1], &s0, &c0);
     rates(k, x, s0, c0, input, k1);
     MCT_UNROLL
     for (int i = 0; i < states; i++) {
         stage[i] = x[i] + step.half * k1[i];
     }
     mct_sincos_near(stage[1], step.half * k1[1], s0, c0, &sine, &cosine);
+    middle[0] = sine;
+    middle[1] = cosine;
     rates(k, stage, sine, cosine, input, k2);
     MCT_UNROLL
     for (int i = 0; i < states; i++) {
@@ -282,24 +285,19 @@ MCT_INLINE void rk4_step(cart_pole_rates rates, int states, const mct_cart_pole_
 MCT_INLINE void rk4(cart_pole_rates rates, int states, const mct_cart_pole_constants *k, mct_state *state,
                     mct_real input, int32_t steps)
 {
-    mct_real x[5], c[5], dx[5];
+    mct_real x[5], c[5], dx[5], middle[2];
     load(states, state, x, c);
     for (int32_t n = 0; n < steps; n++) {
-        mct_real s, cosine;
-        mct_sincos(x[1], &s, &cosine);
-        rk4_step(rates, states, k, x, s, cosine, input, dx);
+        rk4_step(rates, states, k, x, input, dx, middle);
         add(states, k->step.sixth_remainder, dx, x, c);
     }
     store(states, x, c, state);
 }
 
 /* With dry friction: the impulse that it has at the middle of the step, by M where the pole then is. */
-MCT_INLINE void cart_pole_friction(const mct_cart_pole_constants *k, const mct_real *x, mct_real s0,
-                                   mct_real c0, mct_real *dx)
+MCT_INLINE void cart_pole_friction(const mct_cart_pole_constants *k, mct_real s, mct_real c,
+                                   const mct_real *x, mct_real *dx)
 {
-    mct_real s, c;
-    const mct_real turned = k->step.half * x[3];
-    mct_sincos_near(x[1] + turned, turned, s0, c0, &s, &c);
     const mct_real inverse = 1 / (k->cart_mass + k->pole_mass * s * s);
     const mct_inertia2 inertia = {{k->total_mass, k->moment * c, k->inertia},
                                   {inverse, -inverse * c * k->inverse_length, inverse * k->mass_per_inertia}};
@@ -309,13 +307,11 @@ MCT_INLINE void cart_pole_friction(const mct_cart_pole_constants *k, const mct_r
 MCT_INLINE void rk4_dry(cart_pole_rates rates, int states, const mct_cart_pole_constants *k, mct_state *state,
                         mct_real input, int32_t steps)
 {
-    mct_real x[5], c[5], dx[5];
+    mct_real x[5], c[5], dx[5], middle[2];
     load(states, state, x, c);
     for (int32_t n = 0; n < steps; n++) {
-        mct_real s, cosine;
-        mct_sincos(x[1], &s, &cosine);
-        rk4_step(rates, states, k, x, s, cosine, input, dx);
-        cart_pole_friction(k, x, s, cosine, dx);
+        rk4_step(rates, states, k, x, input, dx, middle);
+        cart_pole_friction(k, middle[0], middle[1], x, dx);
         add_resting(states, k->step.sixth_remainder, dx, x, c);
     }
     store(states, x, c, state);

@@ -4,7 +4,7 @@ import json
 import os
 
 import pytest
-from drawn_scenes import run_of, words, worst
+from command.drawn_scenes import run_of, words, worst
 
 CART_POLE = {
     "scene.system": "cart_pole", "scene.duration": "5.0", "scene.substeps": "8", "initial.pole_angle": "2.0",
@@ -153,7 +153,7 @@ def test_an_effect_that_is_left_out_with_a_coefficient_is_pointed_out(mctau, tmp
     assert [(one["name"], one["given"]) for one in motor["coefficients"]] == [("inductance", False)]
     assert motor["estimate"] > 1e-3 and motor["matters"]
     dry = left_out["coulomb"]
-    assert [(one["name"], one["given"]) for one in dry["coefficients"]] == [("arm_coulomb", True)]
+    assert [(one["name"], one["given"]) for one in dry["coefficients"]] == [("arm_coulomb", True), ("static_ratio", False)]
     assert dry["matters"] and dry["changes_most"]["state"] in ("arm_angle", "wheel_angle", "arm_rate", "wheel_rate")
     none = advise(mctau, scene, "--tolerance", "1e-3", "--set", "parameters.arm_coulomb=0", "--set",
                   "parameters.inductance=0")  # fmt: skip
@@ -267,7 +267,7 @@ def test_a_scene_that_is_no_file_is_an_error_of_files(mctau, tmp_path):
 
 
 def test_a_scene_without_effects_has_nothing_to_leave_out(mctau, scenes):
-    off = "--set", "effects.gravity=false", "--set", "effects.viscous=false"
+    off = "--set", "effects.gravity=false", "--set", "effects.viscous=false", "--set", "initial.angle_rate=1"
     found = advise(mctau, scenes / "pendulum.toml", "--tolerance", "1e-3", *off)
     assert found["certified"] and found["effects"] == found["dropped"] == found["kept"] == []
     assert {one["name"] for one in found["left_out"]} == {"gravity", "viscous"}

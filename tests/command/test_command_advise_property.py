@@ -9,7 +9,7 @@ import os
 import random
 
 import pytest
-from drawn_scenes import drawn, run_of, words, worst
+from command.drawn_scenes import drawn, run_of, words, worst
 
 SCENES = int(os.environ.get("MCTAU_ADVISE_SCENES", 50))
 TOLERANCES = ["1e-1", "1e-2", "1e-3", "1e-4"]

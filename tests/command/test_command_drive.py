@@ -32,7 +32,7 @@ def refused(done, exit_code, *words):
     (["--can", NOWHERE, "--csv", ""], ["--csv", "empty"]),
     (["--can", NOWHERE, "--csv", "-"], ["--csv", "--json"]),
     (["--can", NOWHERE, "--csv", "scene.toml"], ["--csv", "scene.toml", "another file"]),
-    (["--can", NOWHERE, "--set", "effects.motor=off", "--set", "controller.kind=none"], ["effects.motor", "volts"]),
+    (["--can", NOWHERE, "--set", "effects.motor=off", "--set", "effects.saturation=off", "--set", "controller.kind=none"], ["effects.motor", "volts"]),
     (["--can", NOWHERE, "--protocol", "native", "--set", "can.mode=foc"], ["can.mode", "foc", "vesc"]),
 ])  # fmt: skip
 def test_a_wrong_command_line_is_refused_by_its_name(mctau, scene, tmp_path, arguments, words):

@@ -9,7 +9,7 @@ import os
 import random
 
 import pytest
-from drawn_scenes import drawn, run_of, words, worst
+from command.drawn_scenes import drawn, run_of, words, worst
 
 SCENES = int(os.environ.get("MCTAU_PICK_SCENES", 7))
 TOLERANCES = ["1e-4", "1e-8", "1e-2", "1e-6", "1e-10"][: int(os.environ.get("MCTAU_PICK_TOLERANCES", 2))]

@@ -162,6 +162,8 @@ static void prepare_scene(mct_scene *scene, int system, int stepper, uint32_t ef
         const char *name = model->parameters[i].name;
         if (strstr(name, "coulomb") != NULL) {
             p[i] = strstr(name, "cart") != NULL ? 0.5 : 1e-3;
+        } else if (strstr(name, "drag") != NULL) {
+            p[i] = strstr(name, "cart") != NULL ? 0.5 : 1e-5;
         }
     }
     scene->initial[model->actuation->upright_coordinate] = 2;
@@ -176,7 +178,8 @@ static double full_input(const mct_scene *scene)
     return model->coordinates[model->actuation->driven_coordinate].is_angle ? 1e-3 : 1;
 }
 
-static void print_kernels(int system, int stepper, const char *motor, uint32_t motor_effect)
+/* Of all sets of gravity, viscous and Moreau's friction beside a motor and `more`. */
+static void print_kernels(const char *what, int system, int stepper, const char *motor, uint32_t more)
 {
     uint64_t hash = 0;
     int suited = 0;
@@ -185,7 +188,7 @@ static void print_kernels(int system, int stepper, const char *motor, uint32_t m
     for (uint32_t others = 0; others < MCT_MOTOR_QUASI_STATIC; others++) {
         mct_scene scene;
         mct_plant plant;
-        prepare_scene(&scene, system, stepper, motor_effect | others);
+        prepare_scene(&scene, system, stepper, more | others);
         const double amplitude = full_input(&scene);
         const mct_status status = mct_plant_init(&plant, &scene, NULL);
         if (status == MCT_ERROR_UNSUITED) {
@@ -204,7 +207,7 @@ static void print_kernels(int system, int stepper, const char *motor, uint32_t m
         }
     }
     if (suited > 0) {
-        printf("%s kernels %s %016llx\n", precision, name, (unsigned long long)hash);
+        printf("%s %s %s %016llx\n", precision, what, name, (unsigned long long)hash);
     }
 }
 
@@ -277,11 +280,21 @@ int main(int argc, char **argv)
         const char *name;
         uint32_t effect;
     } motors[] = {{"off", 0}, {"quasi_static", MCT_MOTOR_QUASI_STATIC}, {"inductive", MCT_MOTOR_INDUCTIVE}};
+    static const struct {
+        const char *name;
+        uint32_t effect;
+    } kinds[] = {{"kernels", 0},
+                 {"drag", MCT_DRAG},
+                 {"exact", MCT_COULOMB_EXACT},
+                 {"exact_drag", MCT_COULOMB_EXACT | MCT_DRAG}};
     print_sincos();
     for (int system = 0; system < MCT_SYSTEM_COUNT && mct_systems[system]->actuation != NULL; system++) {
         for (size_t m = 0; m < sizeof motors / sizeof motors[0]; m++) {
             for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
-                print_kernels(system, stepper, motors[m].name, motors[m].effect);
+                for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+                    print_kernels(kinds[i].name, system, stepper, motors[m].name,
+                                  motors[m].effect | kinds[i].effect);
+                }
             }
             print_evaluations(system, motors[m].name, motors[m].effect);
         }
