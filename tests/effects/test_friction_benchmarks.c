@@ -152,7 +152,7 @@ static void test_a_pendulum_loses_the_friction_times_its_way_between_turning_poi
 /* With friction the energy never grows without an input, whatever the step. */
 static void test_friction_never_adds_energy_to_a_wheel_that_swings(void)
 {
-    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_TAYLOR12, MCT_GRAVITY | MCT_COULOMB_EXACT);
+    mct_scene scene = scene_of(REACTION_WHEEL, MCT_STEPPER_TAYLOR6, MCT_GRAVITY | MCT_COULOMB_EXACT);
     *parameter_of(&scene, "arm_coulomb") = 0.01;
     *parameter_of(&scene, "wheel_coulomb") = 1e-4;
     scene.dt = 5e-3;

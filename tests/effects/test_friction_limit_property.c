@@ -95,7 +95,7 @@ static void test_exact_friction_is_the_limit_of_moreaus(void)
                                                                                : size);
         }
         mct_plant exact, moreau, finer;
-        run(scene, MCT_STEPPER_TAYLOR8, MCT_COULOMB_EXACT, 1, input, &exact);
+        run(scene, MCT_STEPPER_TAYLOR6, MCT_COULOMB_EXACT, 1, input, &exact);
         run(scene, MCT_STEPPER_LEAP, MCT_COULOMB_MOREAU, 8, input, &moreau);
         run(scene, MCT_STEPPER_LEAP, MCT_COULOMB_MOREAU, 64, input, &finer);
         coarse[k] = fine[k] = 0;

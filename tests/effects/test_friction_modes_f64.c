@@ -184,7 +184,7 @@ static void compare(int system, uint32_t effects, double static_ratio, double dt
                     int *visits)
 {
     model self = {.system = system};
-    self.scene = scene_of(system, MCT_STEPPER_TAYLOR12, effects);
+    self.scene = scene_of(system, MCT_STEPPER_TAYLOR6, effects);
     self.scene.dt = dt;
     static const double parameters[2][5] = {{0.3, 0.001, 1.5, 0.1, 4}, {0.005, 1e-6, 0.06, 0.12, 0.25}};
     for (int i = 0; i < 4; i++) {
@@ -242,7 +242,8 @@ static void test_both_coordinates_stick_and_slide_as_an_independent_integration_
         for (int i = 0; i < 2; i++) {
             compare(system, effects[i], 1, 1e-3, 1e-12, visits);
             compare(system, effects[i], 1.4, 1e-3, 1e-12, visits);
-            compare(system, effects[i], 1.4, 6e-3, 1e-11, visits);
+            compare(system, effects[i], 1.4, 6e-3, 1e-9,
+                    visits); /* of order 6: 6^6 times the error at 1 ms */
         }
         for (int k = 0; k < 9; k++) {
             printf("%d ", visits[k]);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "mctau/stepper.h"
-#include "support/scenes.h"
+#include "support/energy.h"
 
 #define WEIGHT       (MCT_GRAVITY | MCT_BUOYANCY)
 #define CONSERVATIVE (WEIGHT | MCT_SPRING | MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE)

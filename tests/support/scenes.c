@@ -47,16 +47,6 @@ double energy_of(const mct_plant *plant)
     return (double)now.kinetic_energy + (double)now.potential_energy + (double)now.magnetic_energy;
 }
 
-double energy_rate(const mct_evaluation *at)
-{
-    double sum = (double)at->power_input + (double)at->power_resistance + (double)at->power_conversion +
-                 (double)at->power_frame;
-    for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
-        sum += (mct_effects[i].mask & (MCT_POTENTIAL | MCT_MOTOR)) ? 0 : (double)at->power[i];
-    }
-    return sum;
-}
-
 const char *motor_name(uint32_t effects)
 {
     return (effects & MCT_MOTOR_INDUCTIVE)      ? "inductive"

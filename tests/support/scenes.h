@@ -5,6 +5,7 @@
 #include "mctau/plant.h"
 #include "mctau/scene.h"
 #include "mctau/stepper.h"
+#include "support/energy.h"
 
 enum { CART_POLE, REACTION_WHEEL, CENTRAL_SYSTEMS }; /* as in mct_systems; those with a motor */
 
@@ -28,9 +29,6 @@ void step_plant(mct_plant *plant, mct_real input, long ticks);
 
 /* Kinetic, potential and magnetic energy at the plant's state [J]. */
 double energy_of(const mct_plant *plant);
-
-/* Rate of these three by the powers [W]. */
-double energy_rate(const mct_evaluation *at);
 
 /* Name of a motor's mode in an effect set. */
 const char *motor_name(uint32_t effects);

@@ -14,12 +14,12 @@
 enum { INPUTS = 64 };
 
 /* What a coefficient gets that is 0 by default, as those of friction and drag are. */
-#define SOME 0.01
+#define SOME 1e-5
 
 typedef struct {
     mct_plant plant;
     mct_state state;
-    mct_real inputs[INPUTS]; /* held for a step each: nothing comes to rest */
+    mct_real inputs[INPUTS]; /* held for a step each */
 } stepping;
 
 static void restart(void *context)
@@ -53,6 +53,10 @@ static void measure_kernel(const measure_effort *effort, int system, int stepper
             scene.parameters[i] = SOME;
         }
     }
+    const int rate = mct_rate_index(model);
+    for (int i = 0; i < model->coordinate_count && !model->is_process; i++) {
+        scene.initial[rate + i] += 2; /* it slides against dry friction, as it does mostly */
+    }
     for (int i = 0; i < INPUTS; i++) {
         self.inputs[i] = (mct_real)((i * 37) % INPUTS - (INPUTS - 1) / 2.0) / 16;
     }
@@ -67,7 +71,8 @@ static void measure_kernel(const measure_effort *effort, int system, int stepper
     printf("flash/%s %d\n", label, mct_kernel_bytes(system, stepper, effects));
 }
 
-static void measure_system(const measure_effort *effort, int system, int stepper)
+/* Those of the effects among `bits` that the system has. */
+static void measure_system(const measure_effort *effort, int system, int stepper, uint32_t among)
 {
     const mct_system *const model = mct_systems[system];
     const uint32_t standard = model->standard_effects & MCT_KERNEL_EFFECTS;
@@ -75,7 +80,7 @@ static void measure_system(const measure_effort *effort, int system, int stepper
     for (int i = 0; i < MCT_EFFECT_COUNT; i++) {
         const mct_effect *const effect = &mct_effects[i];
         for (int choice = 1; choice < 3; choice++) {
-            const uint32_t bits = effect->bits[choice] & MCT_KERNEL_EFFECTS;
+            const uint32_t bits = effect->bits[choice] & among;
             char name[64];
             if (bits == 0 || (bits & ~model->effects) != 0) {
                 continue;
@@ -97,8 +102,11 @@ int main(int argc, char **argv)
         static const int typical[] = {MCT_STEPPER_RK4, MCT_STEPPER_EXPO};
         for (size_t i = 0; i < sizeof typical / sizeof *typical; i++) {
             if (mct_systems[system]->kernel(typical[i], standard) != NULL) {
-                measure_system(&effort, system, typical[i]);
+                measure_system(&effort, system, typical[i], MCT_KERNEL_EFFECTS);
             }
+        }
+        if (mct_systems[system]->kernel(MCT_STEPPER_TAYLOR6, MCT_COULOMB_EXACT) != NULL) {
+            measure_system(&effort, system, MCT_STEPPER_TAYLOR6, MCT_COULOMB_EXACT);
         }
     }
     return 0;

@@ -194,6 +194,18 @@ static void json_estimate(const advice *self, const change *one, json *out)
     json_end_object(out);
 }
 
+/* Whether it is dropped, by itself or with a further step down of the same effect. */
+static bool goes(const advice *self, const change *one)
+{
+    bool result = false;
+    for (int i = 0; i < self->count; i++) {
+        const change *other = &self->list[i];
+        result = result || (other->is_dropped && other->to <= one->to && other->table == one->table &&
+                            strcmp(other->key.field.name, one->key.field.name) == 0);
+    }
+    return result;
+}
+
 static void json_change(const advice *self, const change *one, json *out)
 {
     char text[LABEL];
@@ -211,7 +223,7 @@ static void json_change(const advice *self, const change *one, json *out)
     json_number(out, "flash_bytes",
                 is_effect && one->from != one->to ? advise_flash(self, &self->full_cost, &one->cost)
                                                   : (double)NAN);
-    json_text(out, "decision", one->is_dropped ? "drop" : "keep");
+    json_text(out, "decision", goes(self, one) ? "drop" : "keep");
     json_text(out, "reason", one->reason);
     json_text(out, "set", one->from != one->to ? assignment_of(self, one, text) : NULL);
     json_end_object(out);
@@ -224,10 +236,10 @@ static void json_names(const advice *self, bool dropped, json *out)
         const char *name = self->list[i].key.field.name;
         bool is_named = false; /* by another step of the same effect */
         for (int j = 0; j < i; j++) {
-            is_named = is_named || (self->list[j].is_dropped == dropped &&
+            is_named = is_named || (goes(self, &self->list[j]) == dropped &&
                                     strcmp(self->list[j].key.field.name, name) == 0);
         }
-        if (self->list[i].is_dropped == dropped && !is_named && strcmp(last, name) != 0) {
+        if (goes(self, &self->list[i]) == dropped && !is_named && strcmp(last, name) != 0) {
             json_text(out, NULL, name);
         }
     }
@@ -334,7 +346,7 @@ static void print_change(const advice *self, const change *one)
                  time_of(self, &one->estimate));
     }
     const bool is_told = one->is_fixed || isinf(one->estimate.size);
-    printf("%-4s %-27s%10s%c%7s%7s%7s%9s%c %s\n", one->is_dropped ? "drop" : "keep",
+    printf("%-4s %-27s%10s%c%7s%7s%7s%9s%c %s\n", goes(self, one) ? "drop" : "keep",
            label_of(self, one, label), number_text("%.3g s", one->time_scale, scale),
            advise_is_near_tick(self, one->time_scale) ? '~' : ' ',
            number_text("%.1f", has_cost ? self->full_cost.ns - one->cost.ns : nan, ns),
