@@ -192,8 +192,9 @@ def mode_key(run):
 def command_lines(run):
     sets = "".join(f" --set {shlex.quote(override)}" for override in run.scene.overrides)
     scene = shlex.quote(run.scene.path)
+    ledger = " --ledger" if "ledger" in run.result else ""
     return (
-        f"mctau run {scene}{sets} --csv run.csv --json > run.json\n"
+        f"mctau run {scene}{sets}{ledger} --csv run.csv --json > run.json\n"
         "build/venv/bin/python tools/report/report.py --csv run.csv --json run.json "
         f"--scene {scene}{sets} -o report.html"
     )
