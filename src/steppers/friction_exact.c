@@ -8,7 +8,7 @@ bool mct_friction_next_mode(int *tried, mct_phase *phase, mct_real *required)
     static const int8_t modes[MODES][2] = {{0, 0}, {1, 0},  {-1, 0}, {0, 1},  {0, -1},
                                            {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
     const int coordinates = phase->coordinates;
-    mct_real *const direction = phase->mode.direction;
+    mct_real *const direction = phase->slip.direction;
     if (*tried == 0) { /* all rest that may: a single load that is too large takes its coordinate away */
         int too_large = 0;
         int which = 0;
@@ -112,7 +112,7 @@ static void mirror(mct_real start, mct_real sign, const mct_real *series, int or
 static mct_real stop_of(const mct_phase *phase, int i, mct_real end)
 {
     mct_series along;
-    mirror(mct_friction_size(phase->relative[i]), phase->mode.direction[i], phase->rates[i], phase->order,
+    mirror(mct_friction_size(phase->relative[i]), phase->slip.direction[i], phase->rates[i], phase->order,
            along);
     /* From rest, the start itself is no stop: the root at 0 is divided out. */
     return phase->relative[i] == 0 ? first_crossing(along + 1, phase->order - 1, end)
@@ -141,13 +141,13 @@ mct_real mct_friction_phase(const mct_phase *phase, bool is_last, const mct_real
                             mct_real *gone)
 {
     const int n = phase->coordinates;
-    mct_real left = 1 - phase->mode.passed;
+    mct_real left = 1 - phase->slip.passed;
     mct_real length = left;
     int which = -1; /* of the coordinates the event is about */
     mct_real leaves = 0;
     for (int i = 0; i < n && !is_last; i++) {
         mct_real direction = 0;
-        const mct_real end = phase->mode.direction[i] == 0 ? break_away_of(phase, i, length, &direction)
+        const mct_real end = phase->slip.direction[i] == 0 ? break_away_of(phase, i, length, &direction)
                                                            : stop_of(phase, i, length);
         if (end < length) {
             length = end;

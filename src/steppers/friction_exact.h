@@ -23,24 +23,11 @@
 
 #define MCT_FRICTION_PHASES 6
 
-/* What a phase is distinguished by. */
-typedef struct {
-    mct_real direction[MCT_MAX_ENCODERS]; /* in which a coordinate slides, +-1; 0 at rest */
-    mct_real passed;                      /* of the step, before the phase: a fraction */
-} mct_mode;
-
 typedef struct {
     mct_real hold[MCT_MAX_ENCODERS]; /* static friction, at least the dynamic one */
     mct_real surface;                /* velocity at which friction sees rest: of a belt */
     mct_real rest;                   /* and how far off it is rounding */
 } mct_dry;
-
-/*
- * Writes the series of rates and current in a mode from the start of a phase, over a whole step, and the loads of the
- * coordinates at rest, of one order less. Those have a constant rate. Dynamic friction is `direction`'s opposite.
- */
-typedef void (*mct_phase_series)(const void *constants, unsigned effects, int order, const mct_real *x,
-                                 mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads);
 
 typedef struct {
     int order;
@@ -48,7 +35,7 @@ typedef struct {
     int rows;   /* coordinates, and perhaps a current */
     mct_real h; /* of the whole step */
     mct_dry dry;
-    mct_mode mode;
+    mct_slip slip;                       /* what phases are distinguished by: the mode */
     mct_real relative[MCT_MAX_ENCODERS]; /* velocities to the surface at the start */
     mct_series rates[MCT_MAX_ENCODERS + 1];
     mct_series loads[MCT_MAX_ENCODERS];
@@ -86,7 +73,7 @@ static inline bool mct_friction_within(const mct_real *series, int first, int la
 static inline bool mct_friction_is_quiet(const mct_phase *phase, int i)
 {
     const mct_real *const rate = phase->rates[i], *const load = phase->loads[i];
-    const mct_real direction = phase->mode.direction[i];
+    const mct_real direction = phase->slip.direction[i];
     if (direction == 0) {
         return mct_friction_within(load, 1, phase->order - 1,
                                    phase->dry.hold[i] - mct_friction_size(load[0]));
@@ -97,7 +84,7 @@ static inline bool mct_friction_is_quiet(const mct_phase *phase, int i)
 }
 
 /* Increments of a step of h seconds; n coordinates. */
-MCT_INLINE void mct_friction_exact(mct_phase_series series, const void *constants, mct_dry dry, mct_real h,
+MCT_INLINE void mct_friction_exact(mct_series_of series, const void *constants, mct_dry dry, mct_real h,
                                    unsigned effects, int order, int n, const mct_real *x, mct_real u,
                                    mct_real *dx)
 {
@@ -110,14 +97,14 @@ MCT_INLINE void mct_friction_exact(mct_phase_series series, const void *constant
     phase.rows = rows;
     phase.h = h;
     phase.dry = dry;
-    phase.mode.passed = 0;
+    phase.slip.passed = 0;
     MCT_UNROLL
     for (int i = 0; i < n + rows; i++) {
         dx[i] = 0;
     }
     for (int number = 1; number <= MCT_FRICTION_PHASES; number++) {
         mct_real now[MCT_MAX_STATES], required[MCT_MAX_ENCODERS];
-        mct_real *const direction = phase.mode.direction;
+        mct_real *const direction = phase.slip.direction;
         MCT_UNROLL
         for (int i = 0; i < entries; i++) {
             now[i] = i < n + rows ? x[i] + dx[i] : x[i]; /* a clock is the system's, by `passed` */
@@ -137,7 +124,7 @@ MCT_INLINE void mct_friction_exact(mct_phase_series series, const void *constant
         int tried = 0;
         for (bool is_open = true;;) {
             bool agrees = true;
-            series(constants, effects, order, now, u, &phase.mode, phase.rates, phase.loads);
+            series(constants, effects, order, now, u, &phase.slip, phase.rates, phase.loads);
             MCT_UNROLL
             for (int i = 0; i < n; i++) {
                 if (direction[i] == 0) {
@@ -151,7 +138,7 @@ MCT_INLINE void mct_friction_exact(mct_phase_series series, const void *constant
             }
             is_open = mct_friction_next_mode(&tried, &phase, required);
         }
-        bool is_quiet = phase.mode.passed == 0;
+        bool is_quiet = phase.slip.passed == 0;
         MCT_UNROLL
         for (int i = 0; i < n; i++) {
             is_quiet &= mct_friction_is_quiet(&phase, i);
@@ -172,7 +159,19 @@ MCT_INLINE void mct_friction_exact(mct_phase_series series, const void *constant
         if (!(left > 0)) {
             return;
         }
-        phase.mode.passed = 1 - left;
+        phase.slip.passed = 1 - left;
+    }
+}
+
+/* Taylor's method, with dry friction where it is exact. */
+MCT_INLINE void mct_taylor_dry(mct_series_of series, const void *constants, mct_dry dry, mct_real h,
+                               unsigned effects, int order, int n, const mct_real *x, mct_real u,
+                               mct_real *dx)
+{
+    if (effects & MCT_COULOMB_EXACT) {
+        mct_friction_exact(series, constants, dry, h, effects, order, n, x, u, dx);
+    } else {
+        mct_taylor(series, constants, h, effects, order, n, x, u, dx);
     }
 }
 

@@ -125,18 +125,25 @@ MCT_INLINE void mct_series_increments(const mct_real *rate, mct_real h, int orde
     *of_rate = mct_series_sum(rate, order);
 }
 
+/* Which coordinates stick and slip, where dry friction is exact: friction_exact.h. */
+typedef struct {
+    mct_real direction[MCT_MAX_ENCODERS]; /* in which a coordinate slides, +-1; 0 at rest */
+    mct_real passed;                      /* of the step, before: a fraction */
+} mct_slip;
+
 /*
  * A system whose states are n coordinates, their rates and perhaps a current has one function that writes the series of
- * rates and current. It makes the increments of a step and, at the highest order, the motion within one.
+ * rates and current. It makes the increments of a step and, at the highest order, the motion within one. With exact dry
+ * friction it also writes the loads of what is at rest, of one order less; else slip and loads are NULL.
  */
 typedef void (*mct_series_of)(const void *constants, unsigned effects, int order, const mct_real *x,
-                              mct_real u, mct_series *rates);
+                              mct_real u, const mct_slip *slip, mct_series *rates, mct_series *loads);
 
 MCT_INLINE void mct_taylor(mct_series_of series, const void *constants, mct_real h, unsigned effects,
                            int order, int n, const mct_real *x, mct_real u, mct_real *dx)
 {
     mct_series rates[MCT_MAX_ENCODERS + 1];
-    series(constants, effects, order, x, u, rates);
+    series(constants, effects, order, x, u, NULL, rates, NULL);
     MCT_UNROLL
     for (int i = 0; i < n; i++) {
         mct_series_increments(rates[i], h, order, &dx[i], &dx[n + i]);
@@ -153,7 +160,7 @@ MCT_INLINE void mct_taylor_motion(mct_series_of series, const void *constants, m
     enum { ORDER = MCT_TAYLOR_TERMS - 1 };
     mct_series rates[MCT_MAX_ENCODERS + 1] = {
         {0}}; /* compilers do not see that all that is read is written */
-    series(constants, effects, ORDER, state->x, u, rates);
+    series(constants, effects, ORDER, state->x, u, NULL, rates, NULL);
     for (int i = 0; i < n; i++) {
         for (int k = 0; k <= ORDER; k++) {
             motion->term[k][i] = step.h * mct_series_share(k) * rates[i][k];

@@ -312,7 +312,7 @@ MCT_INLINE void kick_middle(const void *constants, unsigned effects, const mct_r
  * its load is all but friction.
  */
 MCT_INLINE void phase_series(const void *constants, unsigned effects, int order, const mct_real *x,
-                             mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
+                             mct_real u, const mct_slip *slip, mct_series *rates, mct_series *loads)
 {
     const constants_t *k = constants;
     mct_real *const velocity = rates[0];
@@ -321,11 +321,11 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
     mct_real position = x[0]; /* the next term of the position, and of sine and cosine */
     mct_real s = 0, c = 0, ramp = 0;
     if (effects & MCT_COULOMB_EXACT) {
-        direction = mode->direction[0];
+        direction = slip->direction[0];
         inertia = direction == 0 ? 0 : inertia;
     }
     if (effects & MCT_FORCING) {
-        const mct_real passed = (effects & MCT_COULOMB_EXACT) ? mode->passed : 0;
+        const mct_real passed = (effects & MCT_COULOMB_EXACT) ? slip->passed : 0;
         mct_sincos(x[PHASE] + passed * k->phase_step, &s, &c);
         s *= k->amplitude;
         c *= k->amplitude;

@@ -341,8 +341,8 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
  * f - k1 pd, which spares the centrifugal term; c w and s w are the rates of sine and cosine, too. In a mode of exact
  * friction, what is at rest has an unlimited mass; the load on it is what its own equation leaves.
  */
-MCT_INLINE void phase_series(const void *constants, unsigned effects, int order, const mct_real *x,
-                             mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
+MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       const mct_slip *slip, mct_series *rates, mct_series *loads)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
@@ -361,15 +361,15 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
     mct_real against[2] = {0, 0}; /* dynamic friction */
     mct_real drag[2] = {0, 0};
     if (effects & MCT_COULOMB_EXACT) {
-        const bool is_held[2] = {mode->direction[0] == 0, mode->direction[1] == 0};
+        const bool is_held[2] = {slip->direction[0] == 0, slip->direction[1] == 0};
         if (is_held[0] || is_held[1]) {
             to_v[0] = is_held[0] ? 0 : 1 / k->total_mass;
             to_v[1] = to_w[0] = 0;
             to_w[1] = is_held[1] ? 0 : 1 / k->inertia;
         }
         for (int i = 0; i < 2; i++) {
-            against[i] = mode->direction[i] * k->coulomb[i];
-            drag[i] = mode->direction[i] * k->drag[i];
+            against[i] = slip->direction[i] * k->coulomb[i];
+            drag[i] = slip->direction[i] * k->drag[i];
         }
     }
     mct_real cw = c[0] * w[0];
@@ -423,7 +423,7 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
             current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[n], current[n]);
         }
     }
-    if ((effects & MCT_COULOMB_EXACT) && (mode->direction[0] == 0 || mode->direction[1] == 0)) {
+    if ((effects & MCT_COULOMB_EXACT) && (slip->direction[0] == 0 || slip->direction[1] == 0)) {
         const mct_real coupling = k->moment * c[0];
         const mct_real per_step = 1 / h;
         for (int n = 0; n < order; n++) {
@@ -434,22 +434,12 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
     }
 }
 
-MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_series *rates)
-{
-    phase_series(constants, effects, order, x, u, NULL, rates, NULL);
-}
-
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const constants_t *k = constants;
-    if (effects & MCT_COULOMB_EXACT) {
-        const mct_dry dry = {{k->hold[0], k->hold[1]}, 0, 0};
-        mct_friction_exact(phase_series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
-    } else {
-        mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
-    }
+    const mct_dry dry = {{k->hold[0], k->hold[1]}, 0, 0};
+    mct_taylor_dry(series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
 }
 
 static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,

@@ -106,8 +106,8 @@ MCT_INLINE void mct_hinge_kick_symmetric(const void *constants, unsigned effects
 }
 
 /* The rate's in a mode of exact friction, which drag needs, too: w |w| has a kink where the body turns back. */
-MCT_INLINE void mct_hinge_phase(const void *constants, unsigned effects, int order, const mct_real *x,
-                                mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
+MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int order, const mct_real *x,
+                                 mct_real u, const mct_slip *slip, mct_series *rates, mct_series *loads)
 {
     const mct_hinge *k = constants;
     const mct_real h = k->step.h;
@@ -121,7 +121,7 @@ MCT_INLINE void mct_hinge_phase(const void *constants, unsigned effects, int ord
     }
     w[0] = x[1];
     if (effects & MCT_COULOMB_EXACT) {
-        const mct_real direction = mode->direction[0];
+        const mct_real direction = slip->direction[0];
         if (direction == 0) { /* the load of a body at rest is constant */
             turn = 0;
             loads[0][0] = mct_hinge_torque(k, effects & ~(unsigned)MCT_DRAG, s[0], c[0], w[0], u);
@@ -155,23 +155,13 @@ MCT_INLINE void mct_hinge_phase(const void *constants, unsigned effects, int ord
     }
 }
 
-MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int order, const mct_real *x,
-                                 mct_real u, mct_series *rates)
-{
-    mct_hinge_phase(constants, effects, order, x, u, NULL, rates, NULL);
-}
-
 /* Of kernels.h. */
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const mct_hinge *k = constants;
-    if (effects & MCT_COULOMB_EXACT) {
-        const mct_dry dry = {{k->hold}, 0, 0};
-        mct_friction_exact(mct_hinge_phase, constants, dry, k->step.h, effects, order, 1, x, u, dx);
-    } else {
-        mct_taylor(mct_hinge_series, constants, k->step.h, effects, order, 1, x, u, dx);
-    }
+    const mct_dry dry = {{k->hold}, 0, 0};
+    mct_taylor_dry(mct_hinge_series, constants, dry, k->step.h, effects, order, 1, x, u, dx);
 }
 
 /* An angle whose sine and cosine are known: stages of a step lie near it. */

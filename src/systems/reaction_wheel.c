@@ -358,8 +358,8 @@ MCT_INLINE void kick_symmetric(const void *constants, unsigned effects, const mc
 }
 
 /* In a mode of exact friction, what is at rest has an unlimited inertia; its load is what its own equation leaves. */
-MCT_INLINE void phase_series(const void *constants, unsigned effects, int order, const mct_real *x,
-                             mct_real u, const mct_mode *mode, mct_series *rates, mct_series *loads)
+MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
+                       const mct_slip *slip, mct_series *rates, mct_series *loads)
 {
     const constants_t *k = constants;
     const mct_real h = k->step.h;
@@ -378,15 +378,15 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
     mct_real against[2] = {0, 0}; /* dynamic friction */
     mct_real drag[2] = {0, 0};
     if (effects & MCT_COULOMB_EXACT) {
-        const bool is_held[2] = {mode->direction[0] == 0, mode->direction[1] == 0};
+        const bool is_held[2] = {slip->direction[0] == 0, slip->direction[1] == 0};
         if (is_held[0] || is_held[1]) {
             inverse.a12 = 0;
             inverse.a11 = is_held[0] ? 0 : 1 / k->inertia.mass.a11;
             inverse.a22 = is_held[1] ? 0 : k->inverse_wheel;
         }
         for (int i = 0; i < 2; i++) {
-            against[i] = mode->direction[i] * k->coulomb[i];
-            drag[i] = mode->direction[i] * k->drag[i];
+            against[i] = slip->direction[i] * k->coulomb[i];
+            drag[i] = slip->direction[i] * k->drag[i];
         }
     }
     MCT_UNROLL
@@ -425,7 +425,7 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
             current[n + 1] = share * mct_motor_current_rate(&k->motor, input, v[1], now);
         }
     }
-    if ((effects & MCT_COULOMB_EXACT) && (mode->direction[0] == 0 || mode->direction[1] == 0)) {
+    if ((effects & MCT_COULOMB_EXACT) && (slip->direction[0] == 0 || slip->direction[1] == 0)) {
         const mct_real coupling = k->inertia.mass.a12 / h;
         for (int n = 0; n < order; n++) {
             const mct_real rate = (mct_real)(n + 1) * coupling;
@@ -435,22 +435,12 @@ MCT_INLINE void phase_series(const void *constants, unsigned effects, int order,
     }
 }
 
-MCT_INLINE void series(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
-                       mct_series *rates)
-{
-    phase_series(constants, effects, order, x, u, NULL, rates, NULL);
-}
-
 MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const mct_real *x, mct_real u,
                        mct_real *dx)
 {
     const constants_t *k = constants;
-    if (effects & MCT_COULOMB_EXACT) {
-        const mct_dry dry = {{k->hold[0], k->hold[1]}, 0, 0};
-        mct_friction_exact(phase_series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
-    } else {
-        mct_taylor(series, constants, k->step.h, effects, order, 2, x, u, dx);
-    }
+    const mct_dry dry = {{k->hold[0], k->hold[1]}, 0, 0};
+    mct_taylor_dry(series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
 }
 
 static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
