@@ -1,6 +1,7 @@
 """mctau advise: which effects a scene calls for at a tolerance, verified by a run."""
 
 import json
+import math
 import os
 
 import pytest
@@ -160,6 +161,17 @@ def test_an_effect_that_is_left_out_with_a_coefficient_is_pointed_out(mctau, tmp
     assert {one["name"] for one in none["left_out"]} <= {"saturation"}
 
 
+def test_what_friction_holds_is_known_to_slide_without_it(mctau, tmp_path):
+    """On a slope, at rest: no deviation outlives a tick there, so nothing can be told to first order."""
+    scene = tmp_path / "block.toml"
+    scene.write_text('[scene]\nsystem = "block"\nduration = 1.0\n[parameters]\nslope = 0.3\n'
+                     '[effects]\ncoulomb = "moreau"\nspring = false\nforcing = false\n')  # fmt: skip
+    rows = {effect["set"]: effect for effect in advise(mctau, scene, "--tolerance", "1e-3")["effects"]}
+    assert set(rows) == {"effects.gravity=false", "effects.coulomb=off"}
+    assert rows["effects.coulomb=off"]["estimate"] == pytest.approx(9.81 * math.sin(0.3), rel=1e-3)  # its speed after 1 s
+    assert rows["effects.coulomb=off"]["decision"] == "keep" and rows["effects.gravity=false"]["estimate"] == 0
+
+
 def test_what_verification_refuses_is_taken_back(mctau, tmp_path):
     """Without either of two drags a sphere falls a little faster; without both it falls freely."""
     scene = tmp_path / "sphere.toml"
@@ -181,6 +193,8 @@ def test_a_written_scene_runs_and_gives_what_was_promised(mctau, scene, cart_pol
     found = advise(mctau, scene, *words(cart_pole), "--tolerance", "1e-2", "--write", lean)
     text = lean.read_text()
     assert found["certificate"] in text and "dropped: " in found["certificate"]
+    for key in ("cart_velocity = 0 ", "gravity = 9.81 ", "stepper = ", "# current_limit = 2.5 "):
+        assert key in text  # whatever the defaults will be
     done = mctau("run", lean, "--json")
     assert done.returncode == 0 and done.stderr == ""  # no note of an idle coefficient either
     pruned = cart_pole | dict(assignment.split("=") for assignment in found["set"])
