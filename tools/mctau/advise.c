@@ -231,7 +231,6 @@ static void json_change(const advice *self, const change *one, json *out)
 
 static void json_names(const advice *self, bool dropped, json *out)
 {
-    const char *last = "";
     for (int i = 0; i < self->count; i++) {
         const char *name = self->list[i].key.field.name;
         bool is_named = false; /* by another step of the same effect */
@@ -239,7 +238,7 @@ static void json_names(const advice *self, bool dropped, json *out)
             is_named = is_named || (goes(self, &self->list[j]) == dropped &&
                                     strcmp(self->list[j].key.field.name, name) == 0);
         }
-        if (goes(self, &self->list[i]) == dropped && !is_named && strcmp(last, name) != 0) {
+        if (goes(self, &self->list[i]) == dropped && !is_named) {
             json_text(out, NULL, name);
         }
     }

@@ -136,17 +136,12 @@ static void find_left_out(advice *self)
 
 /* --- runs --- */
 
-static int width_of(const mct_scene *scene)
-{
-    return mct_state_count(scene);
-}
-
 /* Rows of a scene's run, to be freed; NULL when it diverges or nothing suits. */
 static double *follow(const advice *self, const mct_scene *scene)
 {
     mct_message why;
     const mct_runner *runner = find_runner(MCT_PRECISION_DOUBLE);
-    double *rows = need_memory(malloc((self->ticks + 1) * (uint64_t)width_of(scene) * sizeof *rows));
+    double *rows = need_memory(malloc((self->ticks + 1) * (uint64_t)mct_state_count(scene) * sizeof *rows));
     trial asked = {.inputs = self->about.inputs, .ticks = self->ticks, .states = rows};
     mct_status status = mct_scene_check(scene, &why);
     if (status == MCT_OK) {
@@ -181,7 +176,7 @@ static departure compare(const advice *self, const double *rows, int width, cons
 static departure departure_of(const advice *self, const mct_scene *scene)
 {
     double *rows = follow(self, scene);
-    const departure found = compare(self, self->rows, self->run.width, rows, width_of(scene));
+    const departure found = compare(self, self->rows, self->run.width, rows, mct_state_count(scene));
     free(rows);
     return found;
 }
@@ -193,7 +188,7 @@ static double own_error(const advice *self, const mct_scene *scene, const double
     finer.stride = 1;
     finer.substeps = scene->stride > 1 ? 1 : 2 * scene->substeps;
     double *others = follow(self, &finer);
-    const double found = compare(self, rows, width_of(scene), others, width_of(scene)).size;
+    const double found = compare(self, rows, mct_state_count(scene), others, mct_state_count(scene)).size;
     free(others);
     return found;
 }
@@ -262,7 +257,7 @@ static bool run_full(advice *self, method how)
     self->full = by_method(&self->full, how);
     free(self->rows);
     self->rows = follow(self, &self->full);
-    self->run = (course){self->about.inputs, self->rows, width_of(&self->full), self->ticks};
+    self->run = (course){self->about.inputs, self->rows, mct_state_count(&self->full), self->ticks};
     if (self->rows == NULL) {
         self->own = (double)INFINITY;
         return false;
@@ -472,7 +467,7 @@ static bool verify(advice *self)
 {
     self->pruned = without_dropped(self, &self->full);
     double *rows = follow(self, &self->pruned);
-    self->verified = compare(self, self->rows, self->run.width, rows, width_of(&self->pruned)).size;
+    self->verified = compare(self, self->rows, self->run.width, rows, mct_state_count(&self->pruned)).size;
     self->uncertainty = self->own;
     if (rows != NULL) {
         self->uncertainty = fmax(self->own, own_error(self, &self->pruned, rows));
