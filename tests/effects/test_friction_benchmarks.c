@@ -23,17 +23,6 @@ void tearDown(void)
 {
 }
 
-static int system_called(const char *name)
-{
-    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        if (strcmp(mct_systems[i]->name, name) == 0) {
-            return i;
-        }
-    }
-    TEST_FAIL_MESSAGE(name);
-    return 0;
-}
-
 /* seed and euler are of first order while a body slides under its weight. */
 static bool is_accurate(int stepper)
 {

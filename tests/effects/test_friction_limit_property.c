@@ -26,17 +26,6 @@ void tearDown(void)
 {
 }
 
-static int system_called(const char *name)
-{
-    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        if (strcmp(mct_systems[i]->name, name) == 0) {
-            return i;
-        }
-    }
-    TEST_FAIL_MESSAGE(name);
-    return 0;
-}
-
 static void set(mct_scene *scene, const char *name, double value)
 {
     for (int i = 0; i < mct_systems[scene->system]->parameter_count; i++) {

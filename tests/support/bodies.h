@@ -32,15 +32,6 @@ typedef struct {
     quad point[4][3], force[4][3];
 } textbook_body;
 
-static inline int system_called(const char *name)
-{
-    int number = 0;
-    while (strcmp(mct_systems[number]->name, name) != 0) {
-        number++;
-    }
-    return number;
-}
-
 /* Sets one of a scene's lists. */
 static inline void set_rows(mct_scene *scene, int list, const double *values, int numbers)
 {

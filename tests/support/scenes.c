@@ -5,6 +5,17 @@
 
 #include "unity.h"
 
+int system_called(const char *name)
+{
+    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
+        if (strcmp(mct_systems[i]->name, name) == 0) {
+            return i;
+        }
+    }
+    TEST_FAIL_MESSAGE(name);
+    return 0;
+}
+
 mct_scene scene_of(int system, int stepper, uint32_t effects)
 {
     mct_scene scene;

@@ -9,6 +9,9 @@
 
 enum { CART_POLE, REACTION_WHEEL, CENTRAL_SYSTEMS }; /* as in mct_systems; those with a motor */
 
+/* Index of a system by its name; fails the test when there is none. */
+int system_called(const char *name);
+
 /* Defaults of a system, with this stepper and these effects; checked at use, not here. */
 mct_scene scene_of(int system, int stepper, uint32_t effects);
 

@@ -22,17 +22,6 @@ void tearDown(void)
 {
 }
 
-static int number_of(const char *name)
-{
-    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        if (strcmp(mct_systems[i]->name, name) == 0) {
-            return i;
-        }
-    }
-    TEST_FAIL_MESSAGE(name);
-    return 0;
-}
-
 /* A body: in the plane if it has no axis. */
 typedef struct {
     const char *name;
@@ -101,8 +90,8 @@ static mct_scene scene_of_motion(const motion *self, int stepper)
 {
     const bool plane = is_plane(self);
     const int columns = plane ? 3 : 4;
-    mct_scene scene =
-        scene_of(number_of(plane ? "particle_pendulum" : "fixed_axis"), stepper, MCT_GRAVITY | MCT_VISCOUS);
+    mct_scene scene = scene_of(system_called(plane ? "particle_pendulum" : "fixed_axis"), stepper,
+                               MCT_GRAVITY | MCT_VISCOUS);
     scene.lists[0].count = columns * self->count;
     for (int i = 0; i < self->count; i++) {
         memcpy(scene.lists[0].values + columns * i, self->particles[i], sizeof(double) * (size_t)columns);

@@ -30,17 +30,6 @@ void tearDown(void)
 {
 }
 
-static int number_of(const char *name)
-{
-    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        if (strcmp(mct_systems[i]->name, name) == 0) {
-            return i;
-        }
-    }
-    TEST_FAIL_MESSAGE(name);
-    return 0;
-}
-
 static void set_particles(mct_scene *scene, const double *numbers, int count)
 {
     scene->lists[0].count = count;
@@ -221,7 +210,7 @@ static void for_all_trials(void (*check)(trial *))
             for (int i = 0; i < 3; i++) {
                 effects |= (n >> i) & 1 ? switches[i] : 0;
             }
-            randomise(&now, &random, number_of(names[system]), effects);
+            randomise(&now, &random, system_called(names[system]), effects);
             check(&now);
         }
         printf("%s, worst in %d:", names[system], TRIALS);
@@ -325,11 +314,11 @@ static void test_one_particle_is_the_pendulum(void)
     for (int n = 0; n < 100; n++) {
         static trial now;
         const uint32_t effects = MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB_MOREAU;
-        randomise(&now, &random, number_of(names[PLANE]), effects);
+        randomise(&now, &random, system_called(names[PLANE]), effects);
         const double row[] = {0.7, 0, 1.3};
         set_particles(&now.scene, row, 3);
         evaluate(&now);
-        mct_scene scene = scene_of(number_of("pendulum"), MCT_STEPPER_RK4, effects);
+        mct_scene scene = scene_of(system_called("pendulum"), MCT_STEPPER_RK4, effects);
         static const char *const same[] = {"gravity", "friction", "coulomb"};
         for (int i = 0; i < 3; i++) {
             *parameter_of(&scene, same[i]) = *parameter_of(&now.scene, same[i]);
@@ -355,13 +344,13 @@ static void test_the_points_of_a_box_about_axis_3_are_the_solid_pendulum(void)
 {
     static const double axis[] = {0, 0, 5}, gravity[] = {0, -9.81, 0};
     static trial now;
-    mct_scene box = scene_of(number_of("solid_pendulum"), MCT_STEPPER_RK4, MCT_GRAVITY);
+    mct_scene box = scene_of(system_called("solid_pendulum"), MCT_STEPPER_RK4, MCT_GRAVITY);
     mct_constants constants;
     mct_evaluation out;
     const mct_real level[2] = {0, 0}, x[2] = {MCT_R(0.8), MCT_R(-2.5)};
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_systems[box.system]->prepare(&box, 1e-3, &constants, NULL));
     mct_systems[box.system]->evaluate(&constants, MCT_GRAVITY, level, 0, &out);
-    now.scene = scene_of(number_of(names[SPACE]), MCT_STEPPER_RK4, MCT_GRAVITY);
+    now.scene = scene_of(system_called(names[SPACE]), MCT_STEPPER_RK4, MCT_GRAVITY);
     now.scene.lists[0].count = 16;
     for (int i = 0; i < 4; i++) {
         double *row = now.scene.lists[0].values + 4 * i;
@@ -420,7 +409,7 @@ static void test_a_skew_particle_spins_steadily_and_its_bearing_has_the_moment_o
         const double s = d * sin(alpha), c = d * cos(alpha);
         const double rows[] = {m, s, c, 0, m, -s, c, 0};
         for (int count = 1; count <= 2; count++) {
-            now.scene = scene_of(number_of(names[SPACE]), MCT_STEPPER_RK4, 0);
+            now.scene = scene_of(system_called(names[SPACE]), MCT_STEPPER_RK4, 0);
             set_particles(&now.scene, rows, 4 * count);
             set_vector(&now.scene, "axis", up);
             now.x[0] = 0;
@@ -445,7 +434,7 @@ static void test_dry_friction_holds_up_to_the_moment_of_the_weight(void)
 {
     for (int system = 0; system < SYSTEMS; system++) {
         static trial now;
-        const int number = number_of(names[system]);
+        const int number = system_called(names[system]);
         FOR_EACH_STEPPER (stepper, number, MCT_GRAVITY | MCT_COULOMB_MOREAU) {
             for (int slips = 0; slips < 2; slips++) {
                 mct_scene scene = scene_of(number, stepper, MCT_GRAVITY);

@@ -31,17 +31,6 @@ void tearDown(void)
 {
 }
 
-static int index_of(const char *name)
-{
-    for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        if (strcmp(mct_systems[i]->name, name) == 0) {
-            return i;
-        }
-    }
-    TEST_FAIL_MESSAGE(name);
-    return -1;
-}
-
 static void cross(const double *a, const double *b, double *c)
 {
     for (int i = 0; i < 3; i++) {
@@ -89,7 +78,7 @@ static void randomise(trial *self, test_random *random, int k)
     for (int i = 0; i < 5; i++) {
         effects |= ((k >> i) & 1) ? switches[i] : 0;
     }
-    self->scene = scene_of(index_of("rotating_frame"), MCT_STEPPER_RK4, effects);
+    self->scene = scene_of(system_called("rotating_frame"), MCT_STEPPER_RK4, effects);
     self->system = mct_systems[self->scene.system];
     *parameter_of(&self->scene, "mass") = random_scale(random, 0.01, 100);
     *parameter_of(&self->scene, "drag") = random_scale(random, 0.001, 10);
@@ -331,7 +320,7 @@ static void test_the_rate_of_the_rotation_vector_is_the_angular_velocity_about_a
 
 static void test_the_euler_force_has_the_factor_m(void)
 {
-    mct_scene scene = scene_of(index_of("rotating_frame"), MCT_STEPPER_RK4, MCT_EULER_FORCE);
+    mct_scene scene = scene_of(system_called("rotating_frame"), MCT_STEPPER_RK4, MCT_EULER_FORCE);
     mct_constants constants;
     mct_evaluation out;
     *parameter_of(&scene, "mass") = 4;
