@@ -28,7 +28,7 @@ typedef struct {
 } hard_result;
 
 typedef struct {
-    int number;          /* of NUMERICS.md's list up to 38, own ones behind */
+    int number;          /* never used again for another case */
     const char *rule;    /* what holds, as a sentence: "an inductance of 10 us is followed at 1 ms" */
     const char *naive;   /* what is commonly done, and its failure */
     const char *remedy;  /* what the library does */
