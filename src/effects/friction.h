@@ -39,21 +39,28 @@ MCT_INLINE void mct_friction_change(int i, mct_real h, mct_real change, mct_real
     dx[i] += MCT_R(0.5) * h * change;
 }
 
-/* Corrects increments where i slides on and j, which is at rest, stays; false, and nothing done, where it is not so. */
-MCT_INLINE bool mct_friction_one_slides(mct_symmetric2 W, int i, const mct_real *slide, const mct_real *hold,
+/*
+ * Corrects increments where i slides on and j, which is at rest, stays; false, and nothing done, where it is not so. Then i
+ * moves alone, M_ii dv_i = (M dv)_i + p_i, which needs no inverse of M: the division waits for nothing.
+ */
+MCT_INLINE bool mct_friction_one_slides(mct_symmetric2 M, int i, const mct_real *slide, const mct_real *hold,
                                         mct_real h, const mct_real *v, mct_real *dx)
 {
     const int j = 1 - i;
-    const mct_real own = i == 0 ? W.a11 : W.a22;
-    const mct_real inverse = 1 / (i == 0 ? W.a22 : W.a11);
+    const mct_real inverse = 1 / (i == 0 ? M.a11 : M.a22);
     const mct_real p = h * (v[i] > 0 ? -slide[i] : slide[i]);
-    const mct_real holds = -inverse * (dx[2 + j] + W.a12 * p);
-    const mct_real change = own * p + W.a12 * holds;
+    const mct_real ratio = inverse * M.a12;
+    const mct_real own = inverse * p;
+    const mct_real pull = dx[2 + j];
+    const mct_real half = MCT_R(0.5) * h;
+    const mct_real dv = (dx[2 + i] + own) + ratio * pull;
+    const mct_real holds = M.a12 * (ratio * pull + own) - (i == 0 ? M.a22 : M.a11) * pull;
     const mct_real bound = h * hold[j];
-    if (v[i] * (v[i] + dx[2 + i] + change) > 0 && holds > -bound && holds < bound) {
-        mct_friction_change(i, h, change, dx);
-        dx[2 + j] = -v[j];
-        dx[j] = MCT_R(0.5) * h * v[j];
+    if (v[i] * (v[i] + dv) > 0 && holds > -bound && holds < bound) {
+        dx[i] = (dx[i] + half * own) + (half * ratio) * pull;
+        dx[2 + i] = dv;
+        dx[j] = 0;
+        dx[2 + j] = 0;
         return true;
     }
     return false;
@@ -70,7 +77,11 @@ MCT_INLINE void mct_friction_correct(mct_inertia2 inertia, const mct_real *slide
 {
     const mct_symmetric2 W = inertia.inverse;
     bool is_done = false;
-    if (v[0] != 0 && v[1] != 0) {
+    if (v[0] == 0) {
+        is_done = v[1] != 0 && mct_friction_one_slides(inertia.mass, 1, slide, hold, h, v, dx);
+    } else if (v[1] == 0) {
+        is_done = mct_friction_one_slides(inertia.mass, 0, slide, hold, h, v, dx);
+    } else {
         const mct_real p[2] = {h * (v[0] > 0 ? -slide[0] : slide[0]), h * (v[1] > 0 ? -slide[1] : slide[1])};
         const mct_real change[2] = {W.a11 * p[0] + W.a12 * p[1], W.a12 * p[0] + W.a22 * p[1]};
         is_done = v[0] * (v[0] + dx[2] + change[0]) > 0 && v[1] * (v[1] + dx[3] + change[1]) > 0;
@@ -78,10 +89,6 @@ MCT_INLINE void mct_friction_correct(mct_inertia2 inertia, const mct_real *slide
             mct_friction_change(0, h, change[0], dx);
             mct_friction_change(1, h, change[1], dx);
         }
-    } else if (v[0] != 0) {
-        is_done = mct_friction_one_slides(W, 0, slide, hold, h, v, dx);
-    } else if (v[1] != 0) {
-        is_done = mct_friction_one_slides(W, 1, slide, hold, h, v, dx);
     }
     if (!is_done) { /* by copies: what is handed on by its address does not stay in registers */
         const mct_inertia2 matrices = inertia;

@@ -193,8 +193,8 @@ static mct_real value_at(const mct_real *c, mct_real s)
  * fraction of h that has passed. It ends where v passes through 0, for there |v| has a corner. Returns the
  * fraction done.
  */
-static mct_real move_part(mct_real a, mct_real stokes, mct_real drag, mct_real h, mct_real *height,
-                          mct_real *velocity)
+MCT_INLINE mct_real move_part(mct_real a, const constants_t *k, unsigned effects, mct_real h,
+                              mct_real *height, mct_real *velocity)
 {
     mct_real v[ORDER + 1];
     mct_real mean[ORDER + 1]; /* of v from 0 to the fraction */
@@ -208,7 +208,11 @@ static mct_real move_part(mct_real a, mct_real stokes, mct_real drag, mct_real h
             square += v[i] * v[n - i];
         }
         const mct_real share = MCT_R(1.0) / (mct_real)(n + 1);
-        v[n + 1] = share * h * ((n == 0 ? a : 0) - stokes * v[n] - sign * drag * square);
+        mct_real acceleration = n == 0 ? a : 0;
+        if (effects & MCT_STOKES) {
+            acceleration -= k->stokes * v[n];
+        }
+        v[n + 1] = share * h * (acceleration - sign * k->drag * square);
         mean[n + 1] = v[n + 1] / (mct_real)(n + 2);
     }
     mct_real done = 1;
@@ -231,21 +235,24 @@ static mct_real move_part(mct_real a, mct_real stokes, mct_real drag, mct_real h
     return done;
 }
 
-static void relax(mct_real a, mct_real stokes, mct_real drag, mct_real h, const mct_real *x, mct_real *dx)
+MCT_INLINE void relax(mct_real a, const constants_t *k, unsigned effects, const mct_real *x, mct_real *dx)
 {
     mct_real velocity = x[1];
-    mct_real left = h;
+    mct_real left = k->step.h;
     dx[0] = 0;
     for (int part = 0; part < MOST_PARTS && left > 0; part++) {
         mct_real length = left;
-        const mct_real rate = stokes + 2 * drag * size_of(velocity);
+        mct_real rate = 2 * k->drag * size_of(velocity);
+        if (effects & MCT_STOKES) {
+            rate += k->stokes;
+        }
         for (int i = 0; i < HALVINGS; i++) {
-            if (rate * length <= MCT_R(0.25) && drag * size_of(a) * length * length <= MCT_R(1.0 / 64)) {
+            if (rate * length <= MCT_R(0.25) && k->drag * size_of(a) * length * length <= MCT_R(1.0 / 64)) {
                 break;
             }
             length *= MCT_R(0.5);
         }
-        const mct_real done = move_part(a, stokes, drag, length, &dx[0], &velocity);
+        const mct_real done = move_part(a, k, effects, length, &dx[0], &velocity);
         left -= done * length;
     }
     dx[0] += left * velocity;
@@ -256,7 +263,7 @@ MCT_INLINE void exact(const constants_t *k, unsigned effects, const mct_real *x,
 {
     const mct_real a = steady(k, effects, u);
     if (effects & MCT_DRAG) {
-        relax(a, k->stokes, k->drag, k->step.h, x, dx);
+        relax(a, k, effects, x, dx);
         return;
     }
     for (int i = 0; i < 2; i++) {

@@ -509,6 +509,7 @@ MCT_INLINE void polar_seed(const constants_t *k, unsigned effects, const mct_rea
 STEP_IN_FRAME(MCT_INLINE, framed_euler, mct_euler(kick_implicit, &now, k->step, effects, 2, y, u, dy))
 STEP_IN_FRAME(MCT_INLINE, framed_leap, mct_leap(kick_symmetric, &now, k->step, effects, 2, y, u, dy))
 STEP_IN_FRAME(MCT_INLINE, framed_taylor, taylor_in_frame(&now, effects, order, y, u, dy))
+STEP_IN_FRAME(MCT_INLINE, framed_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
 STEP_IN_FRAME(RARE, rare_taylor, taylor_in_frame(&now, effects, order, y, u, dy))
 STEP_IN_FRAME(RARE, rare_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
 
@@ -517,8 +518,8 @@ STEP_IN_FRAME(RARE, rare_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 
 /*
  * Whether a step is made in polar coordinates. It is short: by speed, fall, friction and torque at most a quarter of r.
  * And it is no less exact so: r varies in every term, in the frame of the rod in the rest length's part of the force
- * alone, whose acceleration, rest * r, therefore has to outweigh the motion's own, speed * r. That test knows no h: else
- * the error would not go down by the order with the step.
+ * alone, whose acceleration, rest * r, therefore has to outweigh the motion's own, speed * r: never without the spring.
+ * That test knows no h: else the error would not go down by the order with the step.
  */
 MCT_INLINE bool stays_away(const constants_t *k, unsigned effects, const mct_real *x, mct_real inverse,
                            mct_real u)
@@ -526,18 +527,13 @@ MCT_INLINE bool stays_away(const constants_t *k, unsigned effects, const mct_rea
     const mct_real h_square = k->step.h * k->step.h;
     const mct_real stretching = x[2] * inverse;
     const mct_real speed = stretching * stretching + x[3] * x[3];
-    mct_real fall = MCT_NOTHING;
-    mct_real slow = 0;
-    if (effects & MCT_SPRING) {
-        const mct_real rest = k->rest_rate * inverse;
-        fall += size_of(k->stiffness_rate - rest);
-        slow = MCT_R(0.5) * rest;
-    }
+    const mct_real rest = k->rest_rate * inverse;
+    mct_real fall = size_of(k->stiffness_rate - rest);
     if (effects & MCT_GRAVITY) {
         fall += k->gravity * inverse;
     }
     const mct_real couple = nearest_square(k, effects, u) * (inverse * inverse);
-    return speed < slow && h_square * (16 * speed + 4 * fall) + 4 * couple < 1;
+    return speed < MCT_R(0.5) * rest && h_square * (16 * speed + 4 * fall) + 4 * couple < 1;
 }
 
 /* Term n of a a: half the products of mct_series_product. */
@@ -629,7 +625,9 @@ MCT_INLINE void polar_taylor(const constants_t *k, unsigned effects, int order, 
 
 MCT_INLINE void rk4_step(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
-    if (stays_away(k, effects, x, 1 / x[0], u)) {
+    if (!(effects & MCT_SPRING)) {
+        framed_rk4(k, effects, 0, x, u, dx);
+    } else if (stays_away(k, effects, x, 1 / x[0], u)) {
         mct_rk4(polar_derivative_at, 1, k, k->step, effects, 2, x, u, dx);
     } else {
         rare_rk4(k, effects, 0, x, u, dx);
@@ -641,7 +639,9 @@ MCT_INLINE void taylor_step(const constants_t *k, unsigned effects, int order, c
                             mct_real *dx)
 {
     const mct_real inverse = 1 / x[0];
-    if (stays_away(k, effects, x, inverse, u)) {
+    if (!(effects & MCT_SPRING)) {
+        framed_taylor(k, effects, order, x, u, dx);
+    } else if (stays_away(k, effects, x, inverse, u)) {
         polar_taylor(k, effects, order, x, inverse, u, dx);
     } else {
         rare_taylor(k, effects, order, x, u, dx);

@@ -280,7 +280,7 @@ class Deleter:
                 continue
             end = self.end_of(tokens, i)
             statement = self.statement(tokens[i:end])
-            if len(statement) == 6 and statement[:2] == ["const", "bool"] and statement[4] in ("0", "1"):
+            if len(statement) == 6 and statement[0] == "const" and statement[4] in ("0", "1"):
                 tokens = [*tokens[:end], *with_value(tokens[end - 1 :], statement[2], statement[4])[1:]]
             else:
                 out += statement

@@ -1,13 +1,22 @@
 """Reads kernels out of object files: the instructions of each, by the name from src/systems/kernels.h."""
 
 import collections
+import dataclasses
 import json
 import re
 import shlex
+import shutil
 import subprocess
+import sys
+
+import pytest
 
 # x86's scalar and packed forms, with and without AVX.
 PADDING = ("nop", "data16", "cs", "xchg", "endbr")
+# What puts a number elsewhere, a register that is set to 0, and jumps from one piece of a path to its next: how many of
+# these a text has is up to the places that a compiler finds for its values and its blocks.
+MOVES = re.compile(r"^(v?mov|push|pop|c(wt|lt|qt)\b|jmp|nop|data16|cs\b|xchg|endbr)")
+ZERO = re.compile(r"^v?p?xor(l|p[sd])?\s+(%\w+),\2$")
 ARITHMETIC = re.compile(r"^v?(add|sub|mul|div|sqrt|min|max)(sd|ss|pd|ps)$")
 
 
@@ -44,6 +53,34 @@ def functions(file):
         if jump and jump[1] in found:
             found[name] = found[jump[1]]
     return found
+
+
+@dataclasses.dataclass(frozen=True)
+class Executed:
+    """Instructions of a step as it runs."""
+
+    all: float
+    work: float  # without moves
+
+
+def executed(source, program):
+    """Instructions of each piece of work that a program of measure.h counts, by the piece's name."""
+    if shutil.which("valgrind") is None:
+        pytest.skip("valgrind, which counts instructions, is not installed; run tools/setup")
+    sys.path.insert(0, str(source / "tools" / "benchmark"))
+    import instructions
+
+    moves = moves_at(program)
+    return {name: Executed(sum(counts.values()), sum(count for at, count in counts.items() if at not in moves))
+            for name, counts in instructions.count_each(program).items()}
+
+
+def moves_at(program):
+    """Addresses of a program's moves."""
+    table = subprocess.run(["objdump", "-d", "--no-show-raw-insn", program], capture_output=True, text=True,
+                           check=True).stdout
+    lines = re.findall(r"^\s+([0-9a-f]+):\s+(.*?)\s*(?:[#<].*)?$", table, re.MULTILINE)
+    return {int(address, 16) for address, text in lines if MOVES.match(text) or ZERO.match(text)}
 
 
 def arithmetic(body):

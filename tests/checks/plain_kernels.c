@@ -555,12 +555,11 @@ WHEEL(53, 5, wheel_rk4, wheel_dragged_driven)
 WHEEL(55, 5, wheel_rk4_dry, wheel_dragged_alone)
 WHEEL(56, 5, wheel_rk4_dry, wheel_dragged_level)
 
-/* What follows linearly from the rates, and the current if there is one, and from a sine that stays as it is. */
-MCT_INLINE mct_real response(int rates, const mct_real *row, const mct_real *x, mct_real input, mct_real sine)
+/* What follows linearly from the rates, and the current if there is one. */
+MCT_INLINE mct_real response(int rates, const mct_real *row, const mct_real *x, mct_real input)
 {
     const mct_real of_rates = row[0] * x[2] + row[1] * x[3];
-    return (rates == 3 ? of_rates + row[2] * x[4] : of_rates) + row[MCT_EXPO_INPUT] * input +
-           row[MCT_EXPO_CONSTANT] * sine;
+    return (rates == 3 ? of_rates + row[2] * x[4] : of_rates) + row[MCT_EXPO_INPUT] * input;
 }
 
 /* With gravity: the sine goes along the polynomial through its values at the start and at two nodes. */
@@ -569,18 +568,23 @@ MCT_INLINE void expo_step(int rates, const mct_expo *k, const mct_real *x, mct_r
     mct_real growth[2], s, c, unused;
     MCT_EXPO_RELOAD(k); /* else a sixth of the code copies constants ahead of the first step */
     mct_sincos(x[0], &s, &c);
-    /* acceleration and jerk of the arm, where the sine's growth joins in; three derivatives of the sine */
+    /*
+     * Three derivatives of the sine, by acceleration and jerk of the arm, of which the sine's own share is multiplied out:
+     * all else need not wait for it.
+     */
     const mct_real w = x[2];
+    const mct_real a = response(rates, k->mean[0], x, input);
+    const mct_real j = response(rates, k->mean[1], x, input);
+    const mct_real a_by_sine = k->mean[0][MCT_EXPO_CONSTANT];
     const mct_real s1 = w * c;
-    const mct_real a = response(rates, k->mean[0], x, input, s);
-    const mct_real j = response(rates, k->mean[1], x, input, s) + k->mean[0][MCT_EXPO_CONSTANT] * s1;
-    const mct_real s2 = a * c - w * w * s;
-    const mct_real s3 = (j - w * w * w) * c - 3 * w * a * s;
+    const mct_real s2 = a * c - w * w * s + a_by_sine * (s * c);
+    const mct_real s3 = (j - w * w * w) * c - 3 * w * a * s +
+                        (k->mean[1][MCT_EXPO_CONSTANT] * (s * c) + a_by_sine * w * (1 - 4 * (s * s)));
     MCT_UNROLL
     for (int m = 0; m < 2; m++) {
         const mct_real *power = k->angle_powers[m];
-        const mct_real angle =
-            response(rates, k->angle[m], x, input, s) + power[0] * s1 + power[1] * s2 + power[2] * s3;
+        const mct_real angle = response(rates, k->angle[m], x, input) + k->angle[m][MCT_EXPO_CONSTANT] * s +
+                               power[0] * s1 + power[1] * s2 + power[2] * s3;
         mct_expo_turn(x[0], angle, s, c, &growth[m], &unused);
     }
     MCT_UNROLL
