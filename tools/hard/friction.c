@@ -1,0 +1,4 @@
+/* Hard cases of dry friction. */
+#include "hard_run.h"
+
+const hard_case hard_friction[] = {{.rule = NULL}};

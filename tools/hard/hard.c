@@ -1,0 +1,53 @@
+#include "hard.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mctau/real.h"
+
+static const hard_case *const lists[] = {hard_electric,  hard_stiff,   hard_friction, hard_long,
+                                         hard_rotations, hard_numbers, hard_extremes};
+
+const hard_case *hard_case_after(int number)
+{
+    const hard_case *next = NULL;
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+        for (const hard_case *one = lists[i]; one->rule != NULL; one++) {
+            if (one->number > number && (next == NULL || one->number < next->number)) {
+                next = one;
+            }
+        }
+    }
+    return next;
+}
+
+void hard_run_case(const hard_case *about, bool is_full, hard_result results[HARD_METHOD_COUNT])
+{
+    const double seconds = is_full && about->full_seconds > 0 ? about->full_seconds : about->seconds;
+    void *shared = about->prepare != NULL ? about->prepare(about, seconds) : NULL;
+    for (int method = 0; method < HARD_METHOD_COUNT; method++) {
+        memset(&results[method], 0, sizeof results[method]);
+        results[method].is_tried = about->scene != NULL || method >= HARD_LIBRARY;
+        if (results[method].is_tried) {
+            about->run(&(hard_trial){about, method, seconds, shared}, &results[method]);
+        }
+    }
+    free(shared);
+}
+
+void hard_error(hard_result *result, double error)
+{
+    const double size = fabs(error);
+    result->error = size <= result->error ? result->error : size < (double)INFINITY ? size : (double)INFINITY;
+}
+
+double hard_criterion(const hard_case *about)
+{
+    return MCT_REAL_IS_FLOAT ? about->criterion_f32 : about->criterion;
+}
+
+bool hard_is_met(const hard_case *about, const hard_result *result)
+{
+    return result->is_refused ? about->may_refuse : result->error <= hard_criterion(about);
+}
