@@ -402,7 +402,7 @@ const hard_case hard_rotations[] = {
      .naive = "rk4 on du/dt = J^-1(u) w, which grows without bound around |u| = 2 pi",
      .remedy = "a quaternion, turned by small increments: no angle is special to it",
      .measure = "error of the attitude after several turns [rad]",
-     .scene = FREE_BODY "parameters.inertia_2_2 = 1\nparameters.inertia_3_3 = 2\n"
+     .scene = FREE_BODY "parameters.inertia_2_2 = 1\nparameters.inertia_3_3 = 1.7\n"
                         "initial.angular_velocity_1 = 1e-4\ninitial.angular_velocity_3 = 2\n",
      .seconds = 10,
      .criterion = 1e-10,
@@ -429,7 +429,7 @@ const hard_case hard_rotations[] = {
      .measure = "error of the length, at 100 rad/s",
      .scene = FREE_BODY "parameters.inertia_2_2 = 2\nparameters.inertia_3_3 = 3\n"
                         "initial.angular_velocity_3 = 100\n",
-     .seconds = 1000,
+     .seconds = 100,
      .full_seconds = 1e5,
      .criterion = 1e-15,    /* roundings of one step */
      .criterion_f32 = 1e-6, /* the same */
@@ -452,7 +452,7 @@ const hard_case hard_rotations[] = {
      .remedy = "angles from upright, where the sine is 0 exactly",
      .measure = "largest angle from upright [rad]",
      .scene = "scene.system = \"reaction_wheel\"\ninitial.arm_angle = 0\n",
-     .seconds = 100,
+     .seconds = 600,
      .full_seconds = 1e4,
      .criterion = 1e-300, /* 0 */
      .criterion_f32 = 1e-300,
@@ -464,7 +464,7 @@ const hard_case hard_rotations[] = {
      .measure = "error of the attitude [rad]",
      .scene = FREE_BODY "parameters.inertia_2_2 = 1\nparameters.inertia_3_3 = 2\n"
                         "initial.attitude_w = 0.8\ninitial.attitude_x = 0.6\n"
-                        "initial.angular_velocity_1 = -1\n",
+                        "initial.angular_velocity_1 = -1\ninitial.angular_velocity_2 = 1e-4\n",
      .seconds = 10,
      .criterion = 1e-10,
      .criterion_f32 = 1e-4,
