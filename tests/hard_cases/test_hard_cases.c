@@ -20,8 +20,8 @@ static void the_naive_scheme_fails_and_the_library_does_not(void)
 {
     const hard_result *library = &results[HARD_LIBRARY], *naive = &results[HARD_NAIVE];
     char figures[MCT_MESSAGE_SIZE + 128];
-    snprintf(figures, sizeof figures, "%s: %.2g, allowed %.2g; naively %.2g; %s", now->measure, library->error,
-             hard_criterion(now), naive->error, library->why.text);
+    snprintf(figures, sizeof figures, "%s: %.2g, allowed %.2g; naively %.2g; %s", now->measure,
+             library->error, hard_criterion(now), naive->error, library->why.text);
     if (hard_criterion(now) > 0) {
         TEST_ASSERT_TRUE_MESSAGE(hard_is_met(now, library), figures);
         TEST_ASSERT_TRUE_MESSAGE(naive->error > hard_criterion(now), figures);

@@ -6,8 +6,8 @@
 
 #include "mctau/real.h"
 
-static const hard_case *const lists[] = {hard_electric,  hard_stiff,   hard_friction, hard_long,
-                                         hard_rotations, hard_numbers, hard_extremes};
+static const hard_case *const lists[] = {hard_electric, hard_stiff,     hard_fast,    hard_friction,
+                                         hard_long,     hard_rotations, hard_numbers, hard_extremes};
 
 const hard_case *hard_case_after(int number)
 {

@@ -62,9 +62,10 @@ typedef struct hard_case {
 
 /* The cases of one file each, ended by one without a rule; an own case takes the next free number from 39 on. */
 extern const hard_case hard_electric[];  /* motor and inductance: 1 to 4 */
-extern const hard_case hard_stiff[];     /* mass ratios, springs, drag, Stokes, base, frame, spin */
+extern const hard_case hard_stiff[];     /* mass ratios and springs: 5 to 9 */
+extern const hard_case hard_fast[];      /* drag, fluids, shaken base, frame, spin: 17 to 20, 28, 29 */
 extern const hard_case hard_friction[];  /* 26, 27 */
-extern const hard_case hard_long[];      /* energy, reversal, separatrix: many steps */
+extern const hard_case hard_long[];      /* many steps: 22 to 25 */
 extern const hard_case hard_rotations[]; /* 10 to 14, 21 */
 extern const hard_case hard_numbers[];   /* 15, 16, 30 to 38: no stepper has a part in them */
 extern const hard_case hard_extremes[];  /* own ones: parameter ratios, days, controllers at their limits */

@@ -10,11 +10,12 @@ bool hard_start(hard_run *self, const hard_trial *trial, const char *more, hard_
     const bool has_stepper = trial->method < MCT_STEPPER_COUNT;
     mct_override stepper = {assignment, "--stepper"};
     self->result = result;
-    snprintf(text, sizeof text, "%s%s", more != NULL ? more : "", trial->about->scene);
+    snprintf(text, sizeof text, "%s%s", more != NULL ? more : "",
+             trial->about->scene != NULL ? trial->about->scene : "");
     snprintf(assignment, sizeof assignment, "scene.stepper=%s",
              has_stepper ? mct_steppers[trial->method].name : "");
-    mct_status status =
-        mct_scene_read(text, strlen(text), "scene", &stepper, has_stepper ? 1 : 0, &self->scene, &result->why);
+    mct_status status = mct_scene_read(text, strlen(text), "scene", &stepper, has_stepper ? 1 : 0,
+                                       &self->scene, &result->why);
     status = status != MCT_OK ? status : mct_plant_init(&self->plant, &self->scene, &result->why);
     result->is_refused = status != MCT_OK;
     result->stepper = self->scene.stepper;
