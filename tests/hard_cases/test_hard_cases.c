@@ -23,7 +23,7 @@ static void the_naive_scheme_fails_and_the_library_does_not(void)
     snprintf(figures, sizeof figures, "%s: %.2g, allowed %.2g; naively %.2g; %s", now->measure,
              library->error, hard_criterion(now), naive->error, library->why.text);
     if (hard_criterion(now) > 0) {
-        TEST_ASSERT_TRUE_MESSAGE(hard_is_met(now, library), figures);
+        TEST_ASSERT_TRUE_MESSAGE(hard_is_well(now, hard_judge(now, library)), figures);
         TEST_ASSERT_TRUE_MESSAGE(naive->error > hard_criterion(now), figures);
     }
     TEST_ASSERT_FALSE_MESSAGE(naive->is_refused, figures);

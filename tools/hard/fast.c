@@ -274,9 +274,9 @@ static void run_spin(const hard_trial *trial, hard_result *result)
     }
 }
 
-#define KAPITZA(hertz, rate, substeps)                                                                    \
-    "scene.system = \"moving_base\"\nscene.stepper = \"leap\"\nscene.substeps = " substeps "\n"           \
-    "effects.viscous = false\nparameters.length = 0.25\nparameters.gravity = 9.75\n"                      \
+#define KAPITZA(hertz, rate, substeps)                                                          \
+    "scene.system = \"moving_base\"\nscene.stepper = \"leap\"\nscene.substeps = " substeps "\n" \
+    "effects.viscous = false\nparameters.length = 0.25\nparameters.gravity = 9.75\n"            \
     "parameters.base_frequency_1 = 0\nparameters.base_frequency_2 = " rate "\n"
 
 const hard_case hard_fast[] = {
@@ -298,8 +298,9 @@ const hard_case hard_fast[] = {
      .naive = "an explicit step: b h/m = 1000",
      .remedy = "expo: Stokes' drag is flowed exactly",
      .measure = "largest error of the velocity, of the terminal one",
-     .scene = "scene.system = \"falling_sphere\"\nparameters.radius = 3e-7\nparameters.density = 1000\n"
-              "parameters.fluid_density = 1.25\nparameters.fluid_viscosity = 2e-5\nparameters.gravity = 9.75\n",
+     .scene =
+         "scene.system = \"falling_sphere\"\nparameters.radius = 3e-7\nparameters.density = 1000\n"
+         "parameters.fluid_density = 1.25\nparameters.fluid_viscosity = 2e-5\nparameters.gravity = 9.75\n",
      .seconds = 1,
      .criterion = 1e-15,
      .criterion_f32 = 5e-7,

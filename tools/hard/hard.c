@@ -47,7 +47,12 @@ double hard_criterion(const hard_case *about)
     return MCT_REAL_IS_FLOAT ? about->criterion_f32 : about->criterion;
 }
 
-bool hard_is_met(const hard_case *about, const hard_result *result)
+hard_verdict hard_judge(const hard_case *about, const hard_result *result)
 {
-    return result->is_refused ? about->may_refuse : result->error <= hard_criterion(about);
+    const double criterion = hard_criterion(about);
+    return result->is_refused                    ? HARD_REFUSED
+           : !(result->error < (double)INFINITY) ? HARD_NOT_FINITE
+           : !(criterion > 0)                    ? HARD_UNJUDGED
+           : result->error <= criterion          ? HARD_PASSED
+                                                 : HARD_MISSED;
 }

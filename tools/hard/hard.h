@@ -25,7 +25,7 @@ typedef struct {
     bool is_tried;
     bool is_refused; /* by the library, before the first step; `why` says what it said */
     double error;    /* in the case's measure; infinite when states were not finite, or a tick was rejected */
-    int stepper;     /* that ran, of a case with a scene */
+    int stepper;     /* that ran, of a case with a scene; -1: its scene is not even read */
     mct_message why;
 } hard_result;
 
@@ -82,7 +82,21 @@ void hard_error(hard_result *result, double error);
 /* This precision's criterion; 0: none. */
 double hard_criterion(const hard_case *about);
 
-/* Whether the method meets the criterion, by a figure or by a refusal that is allowed. */
-bool hard_is_met(const hard_case *about, const hard_result *result);
+typedef enum {
+    HARD_PASSED,
+    HARD_MISSED,
+    HARD_NOT_FINITE, /* or a tick was rejected */
+    HARD_REFUSED,
+    HARD_UNJUDGED /* a figure, and no criterion in this precision */
+} hard_verdict;
+
+hard_verdict hard_judge(const hard_case *about, const hard_result *result);
+
+/* Whether a verdict on HARD_LIBRARY is well: no miss, and no refusal but one that is allowed. */
+static inline bool hard_is_well(const hard_case *about, hard_verdict verdict)
+{
+    return verdict == HARD_PASSED || verdict == HARD_UNJUDGED ||
+           (verdict == HARD_REFUSED && about->may_refuse);
+}
 
 #endif

@@ -52,8 +52,9 @@ static void run_clock(const hard_trial *trial, hard_result *result)
     }
     mct_scene scene;
     mct_input input;
-    read_scene("scene.system = \"block\"\ninput.kind = \"steps\"\ninput.times = [86400]\ninput.values = [1]\n",
-               &scene);
+    read_scene(
+        "scene.system = \"block\"\ninput.kind = \"steps\"\ninput.times = [86400]\ninput.values = [1]\n",
+        &scene);
     mct_input_init(&input, &scene, (mct_samples){NULL, 0});
     uint64_t tick = due - 1000;
     while (tick < due + 1000 && mct_input_at(&input, tick) == 0) {
@@ -372,11 +373,11 @@ static void run_huge_input(const hard_trial *trial, hard_result *result)
 /* --- 35: scenes that cannot be --- */
 
 static const char *const impossible[] = {
-    "parameters.mass = 0\n",    "parameters.mass = -1\n",  "parameters.length = 0\n",
-    "parameters.mass = nan\n",  "parameters.mass = 1e400\n", "parameters.gravity = inf\n",
-    "scene.dt = 0\n",           "scene.dt = -0.001\n",     "scene.dt = 10\n",
-    "scene.dt = nan\n",         "initial.angle = inf\n",   "scene.substeps = 0\n",
-    "scene.duration = -1\n",    "parameters.friction = -1\n",
+    "parameters.mass = 0\n",   "parameters.mass = -1\n",     "parameters.length = 0\n",
+    "parameters.mass = nan\n", "parameters.mass = 1e400\n",  "parameters.gravity = inf\n",
+    "scene.dt = 0\n",          "scene.dt = -0.001\n",        "scene.dt = 10\n",
+    "scene.dt = nan\n",        "initial.angle = inf\n",      "scene.substeps = 0\n",
+    "scene.duration = -1\n",   "parameters.friction = -1\n",
 };
 
 static void run_impossible(const hard_trial *trial, hard_result *result)
@@ -402,8 +403,7 @@ static void run_impossible(const hard_trial *trial, hard_result *result)
             mct_scene scene;
             mct_message why = {""};
             snprintf(text, sizeof text, "scene.system = \"pendulum\"\n%s", impossible[i]);
-            const mct_status status =
-                mct_scene_read(text, strlen(text), "scene", NULL, 0, &scene, &why);
+            const mct_status status = mct_scene_read(text, strlen(text), "scene", NULL, 0, &scene, &why);
             taken += status == MCT_OK || why.text[0] == '\0';
         }
     }
@@ -465,8 +465,8 @@ static void compare_counters(const hard_trial *trial, int bits, int32_t turns, h
         observe(&one);
         observe(&other);
         const double after = naive_angle(&other, by_turns) - naive_angle(&one, by_turns);
-        hard_error(result, is_naive ? (after - before) / 1e-3
-                                    : (double)(other.observer.x[3] - one.observer.x[3]));
+        hard_error(result,
+                   is_naive ? (after - before) / 1e-3 : (double)(other.observer.x[3] - one.observer.x[3]));
     }
 }
 
@@ -491,7 +491,8 @@ static void run_sum(const hard_trial *trial, hard_result *result)
     mct_real value = 0, compensation = 0;
     for (int i = 0; i < COUNT; i++) {
         if (trial->method == HARD_NAIVE) {
-            value += increment; /* what fast-math makes of it: (sum - larger) is `smaller` to it, the error 0 */
+            value +=
+                increment; /* what fast-math makes of it: (sum - larger) is `smaller` to it, the error 0 */
         } else {
             mct_add_compensated(&value, &compensation, increment);
         }
@@ -591,7 +592,8 @@ const hard_case hard_numbers[] = {
      .rule = "a chain comes as near to a target out of reach as it can, without leaps",
      .naive = "J^-1 e: near the stretched pose its steps have no bound",
      .remedy = "damped by the error, towards the nearest point in reach",
-     .measure = "distance from that point after 1000 updates, reach 2 m [m]; infinite after a leap by half a turn",
+     .measure =
+         "distance from that point after 1000 updates, reach 2 m [m]; infinite after a leap by half a turn",
      .scene = "scene.system = \"chain\"\nparameters.link_lengths = [1, 1]\n",
      .seconds = 1,
      .criterion = 1e-6,
@@ -697,7 +699,8 @@ const hard_case hard_numbers[] = {
      .rule = "a clock passes 2^32, 2^53 and 2^63 ticks unnoticed",
      .naive = "time in seconds: t + dt is t",
      .remedy = "64 bits of ticks, and nothing but the ticks depends on them",
-     .measure = "largest difference of a closed loop's states from those of a clock at 0; naively, the step's error",
+     .measure =
+         "largest difference of a closed loop's states from those of a clock at 0; naively, the step's error",
      .scene = "scene.system = \"reaction_wheel\"\n",
      .seconds = 2,
      .criterion = 1e-300, /* not a bit */

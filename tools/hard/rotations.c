@@ -9,8 +9,8 @@
 /* --- free bodies, about their principal axes --- */
 
 typedef struct {
-    double inertia[3];      /* [kg m^2] */
-    long double x[7];       /* attitude, angular velocity in body axes: at the start */
+    double inertia[3]; /* [kg m^2] */
+    long double x[7];  /* attitude, angular velocity in body axes: at the start */
     long double end[7];
 } body;
 
@@ -72,8 +72,7 @@ static double angle_between(const long double *a, const long double *b)
     }
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        const long double c =
-            a[0] * b[1 + i] - b[0] * a[1 + i] - a[1 + j] * b[1 + k] + a[1 + k] * b[1 + j];
+        const long double c = a[0] * b[1 + i] - b[0] * a[1 + i] - a[1 + j] * b[1 + k] + a[1 + k] * b[1 + j];
         across += c * c;
     }
     return (double)(2 * atan2l(sqrtl(across), fabsl(along)));
@@ -383,8 +382,8 @@ static void run_upright(const hard_trial *trial, hard_result *result)
     }
 }
 
-#define FREE_BODY                                                                                        \
-    "scene.system = \"rigid_body\"\neffects.gravity = false\nparameters.particles = []\n"                \
+#define FREE_BODY                                                                         \
+    "scene.system = \"rigid_body\"\neffects.gravity = false\nparameters.particles = []\n" \
     "parameters.mass = 1\nparameters.inertia_1_1 = 1\n"
 
 /* Numbers that rounding makes: a few hundred roundings of attitudes that turn some ten times. */
@@ -418,7 +417,7 @@ const hard_case hard_rotations[] = {
                         "initial.angular_velocity_1 = 0.5\ninitial.angular_velocity_2 = 2\n"
                         "initial.angular_velocity_3 = 0.3\n",
      .seconds = 10,
-     .criterion = 1e-10,   /* rk4 has 7e-11 */
+     .criterion = 1e-10,    /* rk4 has 7e-11 */
      .criterion_f32 = 1e-4, /* the flip amplifies roundings a hundredfold */
      .prepare = prepare_body,
      .run = run_flip},
