@@ -280,12 +280,14 @@ void mct_pace_find(const mct_scene *scene, mct_pace *pace)
         } else if (halvings == 1 && !(error <= CONVERGES * first)) {
             pace->verdict = MCT_PACE_NOT_FOLLOWED;
         }
-        pace->longest = self.step;
-        if (error <= allowed) {
+        if (error > allowed) {
+            pace->longest = 0;
+        } else if (halvings == 0 || pace->longest > 0) {
             return;
+        } else {
+            pace->longest = self.step; /* if one of half its length follows, too, and this was no chance */
         }
         self.step /= 2;
         self.constants[0] = self.constants[1];
     }
-    pace->longest = 0;
 }
