@@ -39,9 +39,26 @@ static void every_method_tells_a_figure_or_why_there_is_none(void)
     }
 }
 
+static void test_no_two_cases_share_a_number_and_none_of_the_first_38_is_missing(void)
+{
+    int rows = 0, cases = 0, last = 0;
+    for (int i = 0; hard_tables[i] != NULL; i++) {
+        for (const hard_case *one = hard_tables[i]; one->rule != NULL; one++) {
+            rows++;
+        }
+    }
+    for (const hard_case *one = hard_case_after(0); one != NULL; one = hard_case_after(one->number)) {
+        TEST_ASSERT_TRUE(one->number == last + 1 || last >= 38);
+        last = one->number;
+        cases++;
+    }
+    TEST_ASSERT_EQUAL_INT(rows, cases);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_no_two_cases_share_a_number_and_none_of_the_first_38_is_missing);
     for (now = hard_case_after(0); now != NULL; now = hard_case_after(now->number)) {
         char rest[64];
         hard_run_case(now, false, results);

@@ -51,7 +51,8 @@ static double drawn_field(test_random *random, const mct_field *field)
     if (field->kind == MCT_FIELD_CHOICE) {
         return field->choices[0] != NULL && field->choices[1] != NULL && random_in(random, 0, 2) < 1;
     }
-    return field->kind == MCT_FIELD_BOOLEAN ? (double)(random_in(random, 0, 2) < 1) : six_decades(random, field);
+    return field->kind == MCT_FIELD_BOOLEAN ? (double)(random_in(random, 0, 2) < 1)
+                                            : six_decades(random, field);
 }
 
 static void draw_lists(test_random *random, const mct_system *system, mct_scene *scene)
@@ -104,7 +105,8 @@ static mct_scene drawn_scene(test_random *random, int number)
     }
     scene.stepper = mct_best_stepper(&scene);
     const int other = (int)random_in(random, MCT_STEPPER_EULER, 2 * MCT_STEPPER_COUNT);
-    if (other < MCT_STEPPER_COUNT && mct_stepper_suits(&scene, other)) { /* but `seed`, which feeds every oscillation */
+    if (other < MCT_STEPPER_COUNT &&
+        mct_stepper_suits(&scene, other)) { /* but `seed`, which feeds every oscillation */
         scene.stepper = other;
     }
     return scene;
@@ -202,14 +204,14 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
             TEST_ASSERT_TRUE_MESSAGE(isfinite(mct_plant_value(&plant, k)), text);
         }
         if (is_lost || energy.growth > GROWTH) {
-            printf("scene %ld, tick %lu, energy %.3g J of %.3g J grows by %.2g: %s\n", i, (unsigned long)plant.tick,
-                   energy.start, energy.scale, energy.growth, text);
+            printf("scene %ld, tick %lu, energy %.3g J of %.3g J grows by %.2g: %s\n", i,
+                   (unsigned long)plant.tick, energy.start, energy.scale, energy.growth, text);
             wrong++;
         }
     }
     for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        printf("%-18s %4d refused, %4d run, %4d without a source\n", mct_systems[i]->name, refused[i], taken[i],
-               judged[i]);
+        printf("%-18s %4d refused, %4d run, %4d without a source\n", mct_systems[i]->name, refused[i],
+               taken[i], judged[i]);
         TEST_ASSERT_TRUE_MESSAGE(scenes < 300 || taken[i] >= refused[i] / 10, mct_systems[i]->name);
     }
     printf("%d driven out of all bounds by their source\n", driven);

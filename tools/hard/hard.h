@@ -70,6 +70,9 @@ extern const hard_case hard_rotations[]; /* 10 to 14, 21 */
 extern const hard_case hard_numbers[];   /* 15, 16, 30 to 38: no stepper has a part in them */
 extern const hard_case hard_extremes[];  /* own ones: parameter ratios, days, controllers at their limits */
 
+/* All of these tables, ended by NULL. */
+extern const hard_case *const hard_tables[];
+
 /* The case with the smallest number above this one; NULL behind the last. */
 const hard_case *hard_case_after(int number);
 

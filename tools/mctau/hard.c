@@ -26,13 +26,15 @@ const verb verb_hard = {
     .name = "hard",
     .doc = "what breaks common schemes, and what every stepper makes of it",
     .operand = "[CASE...]",
-    .text = "Runs hard cases, all or those with the given numbers. Each has a rule, a figure by which it is judged, and "
-            "a\n"
-            "criterion; it is run as a scene that asks for nothing special, with every stepper, and by what is "
-            "commonly done.\n"
-            "First a line a case: the figure of the scene as it stands and its criterion; the figure of what is "
-            "commonly done.\n"
-            "Then the matrix stepper x case, and why the library refuses what it refuses.",
+    .text =
+        "Runs hard cases, all or those with the given numbers. Each has a rule, a figure by which it is "
+        "judged, and "
+        "a\n"
+        "criterion; it is run as a scene that asks for nothing special, with every stepper, and by what is "
+        "commonly done.\n"
+        "First a line a case: the figure of the scene as it stands and its criterion; the figure of what is "
+        "commonly done.\n"
+        "Then the matrix stepper x case, and why the library refuses what it refuses.",
     .options = options,
     .examples = "  mctau hard\n"
                 "  mctau hard 1 9 29\n"
@@ -77,7 +79,9 @@ static int exit_code_of(const matrix *self)
 
 static const char *method_name(int method)
 {
-    return method < MCT_STEPPER_COUNT ? mct_steppers[method].name : method == HARD_LIBRARY ? "mctau" : "naive";
+    return method < MCT_STEPPER_COUNT ? mct_steppers[method].name
+           : method == HARD_LIBRARY   ? "mctau"
+                                      : "naive";
 }
 
 /* --- JSON --- */
@@ -98,7 +102,8 @@ static void print_json(const matrix *self, FILE *file)
         json_text(&out, "naive", about->naive);
         json_text(&out, "remedy", about->remedy);
         json_text(&out, "measure", about->measure);
-        json_number(&out, "seconds", self->is_full && about->full_seconds > 0 ? about->full_seconds : about->seconds);
+        json_number(&out, "seconds",
+                    self->is_full && about->full_seconds > 0 ? about->full_seconds : about->seconds);
         json_number(&out, "criterion", criterion > 0 ? criterion : (double)NAN);
         json_boolean(&out, "well", is_well(self, one));
         json_list(&out, "methods");
@@ -258,7 +263,8 @@ static void print_text(const matrix *self)
     printf("Hard cases, %s: the scene as it stands, and what is commonly done\n\n", self->runner->precision);
     print_rules(self);
     print_matrix(self);
-    printf("\nCells are figures, smaller is better. *: what a scene gets that does not ask, or would name; !: misses "
+    printf("\nCells are figures, smaller is better. *: what a scene gets that does not ask, or would name; "
+           "!: misses "
            "the\ncriterion; inf: not finite, or a tick was rejected; -: refused, because:\n");
     for (int i = 0; i < self->count; i++) {
         print_reasons(&self->rows[i]);
