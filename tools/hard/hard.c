@@ -6,14 +6,14 @@
 
 #include "mctau/real.h"
 
-static const hard_case *const lists[] = {hard_electric,  hard_stiff,   hard_friction, hard_long,
-                                         hard_rotations, hard_numbers, hard_extremes};
+const hard_case *const hard_tables[] = {hard_electric,  hard_stiff,   hard_fast,     hard_friction, hard_long,
+                                        hard_rotations, hard_numbers, hard_extremes, NULL};
 
 const hard_case *hard_case_after(int number)
 {
     const hard_case *next = NULL;
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
-        for (const hard_case *one = lists[i]; one->rule != NULL; one++) {
+    for (int i = 0; hard_tables[i] != NULL; i++) {
+        for (const hard_case *one = hard_tables[i]; one->rule != NULL; one++) {
             if (one->number > number && (next == NULL || one->number < next->number)) {
                 next = one;
             }
@@ -47,7 +47,12 @@ double hard_criterion(const hard_case *about)
     return MCT_REAL_IS_FLOAT ? about->criterion_f32 : about->criterion;
 }
 
-bool hard_is_met(const hard_case *about, const hard_result *result)
+hard_verdict hard_judge(const hard_case *about, const hard_result *result)
 {
-    return result->is_refused ? about->may_refuse : result->error <= hard_criterion(about);
+    const double criterion = hard_criterion(about);
+    return result->is_refused                    ? HARD_REFUSED
+           : !(result->error < (double)INFINITY) ? HARD_NOT_FINITE
+           : !(criterion > 0)                    ? HARD_UNJUDGED
+           : result->error <= criterion          ? HARD_PASSED
+                                                 : HARD_MISSED;
 }

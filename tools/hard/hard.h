@@ -25,7 +25,7 @@ typedef struct {
     bool is_tried;
     bool is_refused; /* by the library, before the first step; `why` says what it said */
     double error;    /* in the case's measure; infinite when states were not finite, or a tick was rejected */
-    int stepper;     /* that ran, of a case with a scene */
+    int stepper;     /* that ran, of a case with a scene; -1: its scene is not even read */
     mct_message why;
 } hard_result;
 
@@ -62,12 +62,16 @@ typedef struct hard_case {
 
 /* The cases of one file each, ended by one without a rule; an own case takes the next free number from 39 on. */
 extern const hard_case hard_electric[];  /* motor and inductance: 1 to 4 */
-extern const hard_case hard_stiff[];     /* mass ratios, springs, drag, Stokes, base, frame, spin */
+extern const hard_case hard_stiff[];     /* mass ratios and springs: 5 to 9 */
+extern const hard_case hard_fast[];      /* drag, fluids, shaken base, frame, spin: 17 to 20, 28, 29 */
 extern const hard_case hard_friction[];  /* 26, 27 */
-extern const hard_case hard_long[];      /* energy, reversal, separatrix: many steps */
+extern const hard_case hard_long[];      /* many steps: 22 to 25 */
 extern const hard_case hard_rotations[]; /* 10 to 14, 21 */
 extern const hard_case hard_numbers[];   /* 15, 16, 30 to 38: no stepper has a part in them */
 extern const hard_case hard_extremes[];  /* own ones: parameter ratios, days, controllers at their limits */
+
+/* All of these tables, ended by NULL. */
+extern const hard_case *const hard_tables[];
 
 /* The case with the smallest number above this one; NULL behind the last. */
 const hard_case *hard_case_after(int number);
@@ -81,7 +85,21 @@ void hard_error(hard_result *result, double error);
 /* This precision's criterion; 0: none. */
 double hard_criterion(const hard_case *about);
 
-/* Whether the method meets the criterion, by a figure or by a refusal that is allowed. */
-bool hard_is_met(const hard_case *about, const hard_result *result);
+typedef enum {
+    HARD_PASSED,
+    HARD_MISSED,
+    HARD_NOT_FINITE, /* or a tick was rejected */
+    HARD_REFUSED,
+    HARD_UNJUDGED /* a figure, and no criterion in this precision */
+} hard_verdict;
+
+hard_verdict hard_judge(const hard_case *about, const hard_result *result);
+
+/* Whether a verdict on HARD_LIBRARY is well: no miss, and no refusal but one that is allowed. */
+static inline bool hard_is_well(const hard_case *about, hard_verdict verdict)
+{
+    return verdict == HARD_PASSED || verdict == HARD_UNJUDGED ||
+           (verdict == HARD_REFUSED && about->may_refuse);
+}
 
 #endif

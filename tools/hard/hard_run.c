@@ -4,20 +4,34 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Drops "origin:line: ": the text is the case's own. */
+static void drop_origin(mct_message *why)
+{
+    const char *rest = strstr(why->text, ": ");
+    if (rest != NULL) {
+        memmove(why->text, rest + 2, strlen(rest + 2) + 1);
+    }
+}
+
 bool hard_start(hard_run *self, const hard_trial *trial, const char *more, hard_result *result)
 {
     char text[4096], assignment[64];
     const bool has_stepper = trial->method < MCT_STEPPER_COUNT;
     mct_override stepper = {assignment, "--stepper"};
     self->result = result;
-    snprintf(text, sizeof text, "%s%s", more != NULL ? more : "", trial->about->scene);
+    snprintf(text, sizeof text, "%s%s", more != NULL ? more : "",
+             trial->about->scene != NULL ? trial->about->scene : "");
     snprintf(assignment, sizeof assignment, "scene.stepper=%s",
              has_stepper ? mct_steppers[trial->method].name : "");
-    mct_status status =
-        mct_scene_read(text, strlen(text), "scene", &stepper, has_stepper ? 1 : 0, &self->scene, &result->why);
-    status = status != MCT_OK ? status : mct_plant_init(&self->plant, &self->scene, &result->why);
+    mct_status status = mct_scene_read(text, strlen(text), "scene", &stepper, has_stepper ? 1 : 0,
+                                       &self->scene, &result->why);
+    result->stepper = status == MCT_OK ? self->scene.stepper : -1;
+    if (status != MCT_OK) {
+        drop_origin(&result->why);
+    } else {
+        status = mct_plant_init(&self->plant, &self->scene, &result->why);
+    }
     result->is_refused = status != MCT_OK;
-    result->stepper = self->scene.stepper;
     return !result->is_refused;
 }
 
