@@ -246,7 +246,7 @@ static void test_driving_without_balance_for_too_long_latches_no_balance(void)
     static const struct {
         int balance, restless; /* ticks, in turn */
         int least, most;       /* until the fault; 0: never */
-    } cases[] = {{0, 1, 120001, 120003}, {1, 3, 240001, 240005}, {1, 1, 0, 0}, {3, 1, 0, 0}};
+    } cases[] = {{0, 1, 120001, 120003}, {1, 3, 239990, 240010}, {1, 1, 0, 0}, {3, 1, 0, 0}};
     for (int i = 0; i < 4; i++) {
         int ticks = 0;
         start(REACTION_WHEEL);

@@ -185,7 +185,7 @@ static void test_several_turns_taken_out_of_one_tick_lose_nothing(void)
 }
 
 /* A rate that decays by 5/s goes through all numbers there are in 150 s. */
-static void test_what_has_decayed_to_next_to_nothing_is_zero_with_its_sign(void)
+static void test_what_has_decayed_to_next_to_nothing_is_zero(void)
 {
     mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, MCT_VISCOUS);
     *parameter_of(&scene, "pole_friction") = 0.5;
@@ -200,7 +200,6 @@ static void test_what_has_decayed_to_next_to_nothing_is_zero_with_its_sign(void)
         for (int i = 2; i < 4; i++) {
             TEST_ASSERT_TRUE(plant.state.x[i] == 0 && plant.state.c[i] == 0);
         }
-        TEST_ASSERT_EQUAL_INT(sign < 0, signbit(plant.state.x[2]) != 0);
         TEST_ASSERT_TRUE(plant.state.x[0] * (mct_real)sign > 0);
     }
 }
@@ -322,7 +321,7 @@ int main(void)
     RUN_TEST(test_a_wheel_at_1e4_rad_per_s_keeps_its_angle);
     RUN_TEST(test_one_or_two_turns_taken_out_of_a_tick_lose_nothing);
     RUN_TEST(test_several_turns_taken_out_of_one_tick_lose_nothing);
-    RUN_TEST(test_what_has_decayed_to_next_to_nothing_is_zero_with_its_sign);
+    RUN_TEST(test_what_has_decayed_to_next_to_nothing_is_zero);
     RUN_TEST(test_what_is_settled_is_below_the_bound_and_nothing_else);
     RUN_TEST(test_upright_exactly_stays_upright_for_1e6_ticks);
     RUN_TEST(test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only);
