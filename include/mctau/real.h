@@ -16,7 +16,9 @@
 
 #include "mctau/config.h" /* defines MCT_REAL_IS_FLOAT as 0 or 1 */
 
-#ifdef __FAST_MATH__
+/* -ffast-math and, where the compiler tells, each part of it: without finite numbers only, NaN goes unseen. */
+#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || \
+    defined __NO_SIGNED_ZEROS__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__ > 0)
 #error "mctau: fast-math changes the bits of a run; compile without -ffast-math"
 #endif
 #if !defined FLT_EVAL_METHOD || FLT_EVAL_METHOD != 0
