@@ -127,7 +127,7 @@ static void pass_pivot(double nearest, int stepper, double dt, double *x)
 }
 
 /*
- * The spring's force turns while the ball passes; a step without parts is off by up to 1e-2 m here. A quarter of the time
+ * The force turns while the ball passes; steps without parts miss this by orders of magnitude. A quarter of the time
  * of the turn, by order 4, leaves 1e-5 of the 30 m/s^2 times that time: 1e-6 m at the most, some cm from the pivot.
  */
 static void test_with_a_rest_length_the_ball_passes_the_pivot_at_any_distance(void)
