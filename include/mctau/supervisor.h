@@ -25,6 +25,7 @@ typedef enum {
     MCT_FAULT_DRIVE,          /**< a drive reported an error */
     MCT_FAULT_RESTARTED,      /**< a drive restarted and forgot its position */
     MCT_FAULT_ESTOP,          /**< an emergency stop was called on the bus */
+    MCT_FAULT_ENERGY,         /**< a simulation gained energy from nowhere: mct_watch_tick() */
     MCT_FAULT_COUNT
 } mct_fault;
 

@@ -30,6 +30,9 @@ static const struct {
     [MCT_FAULT_RESTARTED] = {"drive_restarted", "a drive restarted and forgot its position; bring the "
                                                 "mechanism to its initial position, then re-arm"},
     [MCT_FAULT_ESTOP] = {"estop", "an emergency stop was called on the bus"},
+    [MCT_FAULT_ENERGY] = {"energy",
+                          "the simulation gained energy from nowhere: its steps do not follow the motion; "
+                          "take more scene.substeps, a smaller scene.dt or another stepper"},
 };
 
 const char *mct_fault_name(mct_fault fault)

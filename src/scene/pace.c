@@ -21,8 +21,8 @@
 
 enum {
     MOST_RATES = 6,
-    ANGLES = 16,  /* places round a turn, top and bottom among them */
-    BESIDE = 3,   /* places at and beside each of them, where one has little inertia */
+    ANGLES = 16, /* places round a turn, top and bottom among them */
+    BESIDE = 3,  /* places at and beside each of them, where one has little inertia */
     HALVINGS = 40
 };
 
@@ -31,9 +31,9 @@ enum {
 #define NOT_FOLLOWED 0.2
 #define CONVERGES    0.75 /* between the two half a step must have less of it, a half where it is of order 1 */
 
-#define FEEDS        0.1  /* of a scheme that feeds oscillations, over all steps of the scene */
+#define FEEDS        0.1 /* of a scheme that feeds oscillations, over all steps of the scene */
 
-#define TURN 6.283185307179586476925
+#define TURN         6.283185307179586476925
 
 typedef struct {
     const mct_scene *scene;
@@ -41,9 +41,9 @@ typedef struct {
     mct_kernel kernel;
     uint32_t effects;
     int coordinates, rate, states;
-    mct_real input;  /* the largest */
-    double energy;   /* at the start [J] */
-    double step;     /* [s] */
+    mct_real input;             /* the largest */
+    double energy;              /* at the start [J] */
+    double step;                /* [s] */
     mct_constants constants[2]; /* of the step and of its half */
 } trial;
 
@@ -131,7 +131,8 @@ static double halving(trial *self, const mct_state *start, const double *M, doub
         v[i] = ((double)whole.x[at] - (double)halves.x[at]) + ((double)whole.c[at] - (double)halves.c[at]);
         gain[i] = (double)halves.x[at] - (double)start->x[at];
     }
-    for (int i = self->coordinates; i < self->rate; i++) { /* a quaternion: all of it moves with its first entry */
+    for (int i = self->coordinates; i < self->rate;
+         i++) { /* a quaternion: all of it moves with its first entry */
         for (int j = self->rate - 4; j < self->rate; j++) {
             const double difference = (double)whole.x[j] - (double)halves.x[j];
             turned += difference * difference;
@@ -179,7 +180,9 @@ static double error_at(trial *self, int place, double beside, mct_pace *where)
         for (int i = 0; i < n; i++) {
             v[i] = 0;
             for (int j = 0; j < n; j++) {
-                v[i] += direction == j ? inverse[i * n + j] : direction == n ? inverse[i * n + j] / mct_sqrt(inverse[j * n + j]) : 0;
+                v[i] += direction == j   ? inverse[i * n + j]
+                        : direction == n ? inverse[i * n + j] / mct_sqrt(inverse[j * n + j])
+                                         : 0;
             }
             v[i] = direction == n + 1 ? self->scene->initial[self->rate + i] : v[i];
         }
@@ -243,7 +246,8 @@ void mct_pace_find(const mct_scene *scene, mct_pace *pace)
     self.system = mct_systems[scene->system];
     self.effects = mct_scene_effects(scene);
     /* Dry friction is an impulse that no step is too long for. A series may need it, where it finds the kinks of drag. */
-    self.kernel = self.system->kernel(scene->stepper, self.effects & MCT_KERNEL_EFFECTS & ~(uint32_t)MCT_COULOMB);
+    self.kernel =
+        self.system->kernel(scene->stepper, self.effects & MCT_KERNEL_EFFECTS & ~(uint32_t)MCT_COULOMB);
     if (self.kernel == NULL) {
         self.kernel = self.system->kernel(scene->stepper, self.effects & MCT_KERNEL_EFFECTS);
     }

@@ -67,7 +67,8 @@ static void test_a_light_cart_blows_up_as_it_is_and_keeps_its_energy_with_the_st
         TEST_ASSERT_EQUAL_INT(MCT_OK, mct_scene_check(&scene, NULL));
         /* What a step leaves open is 0.11 of the rates, see src/scene/pace.c; energies are sums with the cart's millionth. */
         const double gained = energy_gained(&scene, 1);
-        printf("%s: steps of %.3g s, energy grows by %.2g\n", mct_steppers[steppers[i]].name, pace.longest, gained);
+        printf("%s: steps of %.3g s, energy grows by %.2g\n", mct_steppers[steppers[i]].name, pace.longest,
+               gained);
         TEST_ASSERT_TRUE(gained < 0.11 + 4 * (double)MCT_REAL_EPSILON / 1e-6);
     }
 }

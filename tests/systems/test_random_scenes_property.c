@@ -12,6 +12,7 @@
 
 #include "mctau/constants.h"
 #include "mctau/input.h"
+#include "mctau/watch.h"
 #include "scene/tables.h"
 #include "support/random.h"
 #include "support/scenes.h"
@@ -51,7 +52,8 @@ static double drawn_field(test_random *random, const mct_field *field)
     if (field->kind == MCT_FIELD_CHOICE) {
         return field->choices[0] != NULL && field->choices[1] != NULL && random_in(random, 0, 2) < 1;
     }
-    return field->kind == MCT_FIELD_BOOLEAN ? (double)(random_in(random, 0, 2) < 1) : six_decades(random, field);
+    return field->kind == MCT_FIELD_BOOLEAN ? (double)(random_in(random, 0, 2) < 1)
+                                            : six_decades(random, field);
 }
 
 static void draw_lists(test_random *random, const mct_system *system, mct_scene *scene)
@@ -104,7 +106,8 @@ static mct_scene drawn_scene(test_random *random, int number)
     }
     scene.stepper = mct_best_stepper(&scene);
     const int other = (int)random_in(random, MCT_STEPPER_EULER, 2 * MCT_STEPPER_COUNT);
-    if (other < MCT_STEPPER_COUNT && mct_stepper_suits(&scene, other)) { /* but `seed`, which feeds every oscillation */
+    if (other < MCT_STEPPER_COUNT &&
+        mct_stepper_suits(&scene, other)) { /* but `seed`, which feeds every oscillation */
         scene.stepper = other;
     }
     return scene;
@@ -170,10 +173,11 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
     const long scenes = setting("MCT_RANDOM_SCENES", TEST_CASES(1000));
     const long ticks = setting("MCT_RANDOM_TICKS", 3000);
     int refused[MCT_SYSTEM_COUNT] = {0}, taken[MCT_SYSTEM_COUNT] = {0}, judged[MCT_SYSTEM_COUNT] = {0};
-    int wrong = 0, driven = 0;
+    int wrong = 0, driven = 0, watched = 0, alarms = 0;
     test_random random = {20260101};
     for (long i = 0; i < scenes; i++) {
         static mct_plant plant;
+        mct_watch watch;
         char text[2000];
         mct_message why = {""};
         mct_input input;
@@ -189,11 +193,13 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
         start_plant(&plant, &scene);
         mct_input_init(&input, &scene, (mct_samples){0});
         look(&energy, &plant);
+        mct_watch_start(&watch, &plant, &scene);
         for (long tick = 0; tick < ticks && plant.diverged_ticks == 0; tick++) {
             mct_plant_step(&plant, mct_input_at(&input, plant.tick));
             if (!mct_systems[scene.system]->is_process) {
                 look(&energy, &plant);
             }
+            (void)mct_watch_tick(&watch, &plant);
         }
         judged[scene.system] += !energy.is_fed;
         const bool is_lost = plant.diverged_ticks > 0 && !energy.is_fed;
@@ -201,18 +207,21 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
         for (int k = 0; k < plant.states; k++) {
             TEST_ASSERT_TRUE_MESSAGE(isfinite(mct_plant_value(&plant, k)), text);
         }
-        if (is_lost || energy.growth > GROWTH) {
-            printf("scene %ld, tick %lu, energy %.3g J of %.3g J grows by %.2g: %s\n", i, (unsigned long)plant.tick,
-                   energy.start, energy.scale, energy.growth, text);
+        watched += watch.is_watched;
+        alarms += watch.impossible > 0 && plant.diverged_ticks == 0;
+        if (is_lost || energy.growth > GROWTH || (watch.impossible > 0 && plant.diverged_ticks == 0)) {
+            printf("scene %ld, tick %lu, energy %.3g J of %.3g J grows by %.2g: %s\n", i,
+                   (unsigned long)plant.tick, energy.start, energy.scale, energy.growth, text);
             wrong++;
         }
     }
     for (int i = 0; i < MCT_SYSTEM_COUNT; i++) {
-        printf("%-18s %4d refused, %4d run, %4d without a source\n", mct_systems[i]->name, refused[i], taken[i],
-               judged[i]);
+        printf("%-18s %4d refused, %4d run, %4d without a source\n", mct_systems[i]->name, refused[i],
+               taken[i], judged[i]);
         TEST_ASSERT_TRUE_MESSAGE(scenes < 300 || taken[i] >= refused[i] / 10, mct_systems[i]->name);
     }
     printf("%d driven out of all bounds by their source\n", driven);
+    printf("%d watched by their energy, %d of them in vain\n", watched, alarms);
     TEST_ASSERT_EQUAL_INT(0, wrong);
 }
 
