@@ -26,6 +26,7 @@ typedef enum {
     MCT_FAULT_RESTARTED,      /**< a drive restarted and forgot its position */
     MCT_FAULT_ESTOP,          /**< an emergency stop was called on the bus */
     MCT_FAULT_NO_BALANCE,     /**< driven for too long without balancing */
+    MCT_FAULT_ENERGY,         /**< a simulation gained energy from nowhere: mct_watch_tick() */
     MCT_FAULT_COUNT
 } mct_fault;
 

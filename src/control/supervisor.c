@@ -33,6 +33,9 @@ static const struct {
     [MCT_FAULT_NO_BALANCE] =
         {"no_balance", "the motor was driven for too long without balancing; look at its supply, at the "
                        "encoders' counts and noise, and at controller.give_up_after"},
+    [MCT_FAULT_ENERGY] = {"energy",
+                          "the simulation gained energy from nowhere: its steps do not follow the motion; "
+                          "take more scene.substeps, a smaller scene.dt or another stepper"},
 };
 
 const char *mct_fault_name(mct_fault fault)

@@ -12,6 +12,7 @@
 
 #include "mctau/constants.h"
 #include "mctau/input.h"
+#include "mctau/watch.h"
 #include "scene/tables.h"
 #include "support/random.h"
 #include "support/scenes.h"
@@ -172,10 +173,11 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
     const long scenes = setting("MCT_RANDOM_SCENES", TEST_CASES(1000));
     const long ticks = setting("MCT_RANDOM_TICKS", 3000);
     int refused[MCT_SYSTEM_COUNT] = {0}, taken[MCT_SYSTEM_COUNT] = {0}, judged[MCT_SYSTEM_COUNT] = {0};
-    int wrong = 0, driven = 0;
+    int wrong = 0, driven = 0, watched = 0, alarms = 0;
     test_random random = {20260101};
     for (long i = 0; i < scenes; i++) {
         static mct_plant plant;
+        mct_watch watch;
         char text[2000];
         mct_message why = {""};
         mct_input input;
@@ -191,11 +193,13 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
         start_plant(&plant, &scene);
         mct_input_init(&input, &scene, (mct_samples){0});
         look(&energy, &plant);
+        mct_watch_start(&watch, &plant, &scene);
         for (long tick = 0; tick < ticks && plant.diverged_ticks == 0; tick++) {
             mct_plant_step(&plant, mct_input_at(&input, plant.tick));
             if (!mct_systems[scene.system]->is_process) {
                 look(&energy, &plant);
             }
+            (void)mct_watch_tick(&watch, &plant);
         }
         judged[scene.system] += !energy.is_fed;
         const bool is_lost = plant.diverged_ticks > 0 && !energy.is_fed;
@@ -203,7 +207,9 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
         for (int k = 0; k < plant.states; k++) {
             TEST_ASSERT_TRUE_MESSAGE(isfinite(mct_plant_value(&plant, k)), text);
         }
-        if (is_lost || energy.growth > GROWTH) {
+        watched += watch.is_watched;
+        alarms += watch.impossible > 0 && plant.diverged_ticks == 0;
+        if (is_lost || energy.growth > GROWTH || (watch.impossible > 0 && plant.diverged_ticks == 0)) {
             printf("scene %ld, tick %lu, energy %.3g J of %.3g J grows by %.2g: %s\n", i,
                    (unsigned long)plant.tick, energy.start, energy.scale, energy.growth, text);
             wrong++;
@@ -215,6 +221,7 @@ static void test_a_scene_that_is_taken_stays_finite_and_gains_no_energy(void)
         TEST_ASSERT_TRUE_MESSAGE(scenes < 300 || taken[i] >= refused[i] / 10, mct_systems[i]->name);
     }
     printf("%d driven out of all bounds by their source\n", driven);
+    printf("%d watched by their energy, %d of them in vain\n", watched, alarms);
     TEST_ASSERT_EQUAL_INT(0, wrong);
 }
 
