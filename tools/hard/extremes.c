@@ -199,8 +199,20 @@ static void run_limits(const hard_trial *trial, hard_result *result)
 
 /* --- 50: ratios of parameters --- */
 
-/* Nothing of these brings energy in. */
-#define PASSIVE (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_DRAG | MCT_SPRING | MCT_STOKES | MCT_BUOYANCY)
+/* Nothing of these brings energy in; apparent forces do not, in space, as all of them are on by default. */
+#define PASSIVE                                                                                    \
+    (MCT_GRAVITY | MCT_VISCOUS | MCT_COULOMB | MCT_DRAG | MCT_SPRING | MCT_STOKES | MCT_BUOYANCY | \
+     MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE)
+
+/* Whether a state is so large that the next tick may take it out of bounds without any error. */
+static bool is_far(const mct_plant *plant)
+{
+    bool is = false;
+    for (int i = 0; i < plant->states; i++) {
+        is |= fabs((double)plant->state.x[i]) > 0.1 * (double)MCT_STATE_BOUND;
+    }
+    return is;
+}
 
 /* By how much the energy of a scene grows in a time, relative to what is exchanged; infinite where it blows up. */
 static double growth(const mct_scene *scene, double seconds)
@@ -215,22 +227,22 @@ static double growth(const mct_scene *scene, double seconds)
     const double rounding =
         1e4 * (double)MCT_REAL_EPSILON * fabs(potential); /* of energies that nearly cancel */
     double scale = fmax((double)now.kinetic_energy, rounding), most = 0;
-    for (uint64_t tick = 0; tick < (uint64_t)(seconds / scene->dt); tick++) {
+    for (uint64_t tick = 0; tick < (uint64_t)(seconds / scene->dt) && plant.diverged_ticks == 0; tick++) {
         mct_plant_step(&plant, 0);
         mct_plant_evaluate(&plant, &now);
         scale = fmax(scale, (double)now.kinetic_energy);
         scale = fmax(scale, fabs((double)now.potential_energy - potential));
         most = fmax(most, (double)now.kinetic_energy + (double)now.potential_energy - energy);
     }
-    return plant.diverged_ticks > 0 ? (double)INFINITY : most > 0 ? most / scale : 0;
+    return plant.diverged_ticks > 0 && !is_far(&plant) ? (double)INFINITY : most > 0 ? most / scale : 0;
 }
 
 static void run_ratios(const hard_trial *trial, hard_result *result)
 {
     static const double factors[] = {1e-6, 1e-3, 1e3, 1e6};
     if (trial->method == HARD_NAIVE) {
-        double length = 0.42,
-               rate = 0; /* a spring of 40e6 N/m, rest length 0.3 m, mass 0.5 kg: semi-implicit Euler */
+        /* a spring of 40e6 N/m, rest length 0.3 m, mass 0.5 kg: semi-implicit Euler */
+        double length = 0.42, rate = 0;
         for (int step = 0; step < 2000 && rate < 1e9; step++) {
             rate -= 1e-3 * 40e6 / 0.5 * (length - 0.3);
             length += 1e-3 * rate;
@@ -240,6 +252,7 @@ static void run_ratios(const hard_trial *trial, hard_result *result)
     }
     for (int number = 0; number < MCT_SYSTEM_COUNT; number++) {
         const mct_system *system = mct_systems[number];
+        int taken = 0;
         for (int i = 0; i < system->parameter_count && !system->is_process; i++) {
             const mct_field *field = &system->parameters[i];
             for (size_t n = 0; n < COUNT(factors) && field->kind == MCT_FIELD_REAL && field->standard != 0;
@@ -252,10 +265,14 @@ static void run_ratios(const hard_trial *trial, hard_result *result)
                 mct_message why = {""};
                 if (mct_scene_check(&scene, &why) == MCT_OK) {
                     hard_error(result, growth(&scene, trial->seconds));
+                    taken++;
                 } else if (why.text[0] == '\0') {
                     hard_error(result, (double)INFINITY);
                 }
             }
+        }
+        if (taken == 0 && !system->is_process) {
+            hard_error(result, (double)INFINITY); /* all refused: nothing was shown */
         }
     }
 }
@@ -312,6 +329,6 @@ const hard_case hard_extremes[] = {
      .measure = "largest growth of energy, relative to what is exchanged, over all systems and parameters",
      .seconds = 2,
      .criterion = 1e-3, /* steps that are just short enough have errors of this size */
-     .criterion_f32 = 1e-3,
+     .criterion_f32 = 1e-2, /* of a frame that turns by 2e5 rad, whose angle is known to 6e-8 of itself */
      .run = run_ratios},
     {.rule = NULL}};
