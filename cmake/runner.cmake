@@ -1,7 +1,7 @@
 # The command, with every precision in one binary.
 #
 # The core has the same C names in each precision, so two of them cannot be linked into one program as such.
-# What belongs to a precision (tools/mctau/runner*.c, core, HAL, telemetry types) is therefore linked into one
+# What belongs to a precision (tools/mctau/runner*.c, tools/hard, core, HAL, telemetry types) is therefore linked into one
 # object file first, and every name in it but one, MCT_RUNNER, is made local to that file:
 #
 #   runner*.c, core, hal  --ld -r-->  all_f32.o  --objcopy-->  runner_f32.o, which shows mct_runner_f32 alone
@@ -12,6 +12,7 @@ file(GLOB_RECURSE command_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/
 set(runner_sources ${command_sources})
 list(FILTER runner_sources INCLUDE REGEX "/runner[^/]*\\.c$")
 list(FILTER command_sources EXCLUDE REGEX "/runner[^/]*\\.c$")
+file(GLOB hard_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/hard/*.c) # belong to a precision as well
 if(NOT command_sources)
     mctau_missing("tools/mctau holds no C file, so the command is left out")
     return()
@@ -34,7 +35,7 @@ foreach(precision IN LISTS MCTAU_PRECISIONS)
     if(NOT runner_sources)
         break()
     endif()
-    add_library(mctau_runner_${tag} OBJECT ${runner_sources})
+    add_library(mctau_runner_${tag} OBJECT ${runner_sources} ${hard_sources})
     target_link_libraries(mctau_runner_${tag} PRIVATE ${library})
     target_compile_definitions(mctau_runner_${tag} PRIVATE MCT_RUNNER=mct_runner_${tag})
 

@@ -72,6 +72,7 @@ typedef struct mct_scene {
     double capture;
     double track_half_length; /**< [m] */
     double overspeed;         /**< [rad/s] */
+    double give_up_after;     /**< [s] without balance, less those with it; 0: never */
     double rearm_after;       /**< [s]; 0: only when asked to */
     double weights[2 * MCT_MAX_ENCODERS];
     double input_weight;

@@ -25,6 +25,8 @@ typedef enum {
     MCT_FAULT_DRIVE,          /**< a drive reported an error */
     MCT_FAULT_RESTARTED,      /**< a drive restarted and forgot its position */
     MCT_FAULT_ESTOP,          /**< an emergency stop was called on the bus */
+    MCT_FAULT_NO_BALANCE,     /**< driven for too long without balancing */
+    MCT_FAULT_ENERGY,         /**< a simulation gained energy from nowhere: mct_watch_tick() */
     MCT_FAULT_COUNT
 } mct_fault;
 
@@ -52,9 +54,11 @@ typedef struct {
     int32_t last_counts;              /**< of the driven coordinate */
     mct_real track_half_length;       /**< [m], of a driven length */
     mct_real overspeed;               /**< [rad/s] of the driven angle */
-    uint32_t rearm_limit; /**< ticks of good feedback after which a fault is forgotten; 0: never */
-    uint32_t good_ticks;  /**< of good feedback since a fault was latched */
-    uint64_t rearmed;     /**< times that faults were cleared */
+    uint32_t rearm_limit;    /**< ticks of good feedback after which a fault is forgotten; 0: never */
+    uint32_t good_ticks;     /**< of good feedback since a fault was latched */
+    uint64_t rearmed;        /**< times that faults were cleared */
+    uint64_t give_up_limit;  /**< restless ticks that are too many; 0: any number will do */
+    uint64_t restless_ticks; /**< of driving without balance, less those of balance since */
 } mct_supervisor;
 
 /** Voltages of a closed loop are whole millivolts: what a drive can be told, and the same in a simulation. */
@@ -72,6 +76,13 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene);
  */
 mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *reading, const mct_real *estimate,
                              mct_real wanted);
+
+/**
+ * Says on each tick of a closed loop, ahead of mct_supervisor_pass, whether the controller balances. One that has driven
+ * without balance for mct_scene.give_up_after longer than with it will not: the motor is too weak, an encoder too coarse.
+ * It would swing at full voltage for ever.
+ */
+void mct_supervisor_watch_balance(mct_supervisor *supervisor, bool is_balancing);
 
 /** Latches a fault that somebody else saw. */
 void mct_supervisor_fault(mct_supervisor *supervisor, mct_fault fault);

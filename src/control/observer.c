@@ -117,6 +117,8 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
             *rate += observer->rate_gain * deviation;
             observer->correction[i] = observer->rate_gain * deviation / h;
         }
+        track->deviation = mct_settled(track->deviation);
+        *rate = mct_settled(*rate);
         const mct_real measured = track->start + (mct_real)track->travelled * track->unit;
         const mct_real position = measured - track->deviation;
         observer->x[i] = track->turn != 0 ? wrapped(position) : position;

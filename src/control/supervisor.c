@@ -30,6 +30,12 @@ static const struct {
     [MCT_FAULT_RESTARTED] = {"drive_restarted", "a drive restarted and forgot its position; bring the "
                                                 "mechanism to its initial position, then re-arm"},
     [MCT_FAULT_ESTOP] = {"estop", "an emergency stop was called on the bus"},
+    [MCT_FAULT_NO_BALANCE] =
+        {"no_balance", "the motor was driven for too long without balancing; look at its supply, at the "
+                       "encoders' counts and noise, and at controller.give_up_after"},
+    [MCT_FAULT_ENERGY] = {"energy",
+                          "the simulation gained energy from nowhere: its steps do not follow the motion; "
+                          "take more scene.substeps, a smaller scene.dt or another stepper"},
 };
 
 const char *mct_fault_name(mct_fault fault)
@@ -68,6 +74,7 @@ void mct_supervisor_init(mct_supervisor *supervisor, const mct_scene *scene)
     supervisor->frozen_limit = (uint32_t)(FROZEN_MS * 1e-3 / scene->dt) + 1;
     supervisor->track_half_length = (mct_real)scene->track_half_length;
     supervisor->overspeed = (mct_real)scene->overspeed;
+    supervisor->give_up_limit = (uint64_t)(scene->give_up_after / scene->dt + 0.5);
     supervisor->rearm_limit = (uint32_t)(scene->rearm_after / scene->dt + 0.5);
 }
 
@@ -88,8 +95,18 @@ void mct_supervisor_rearm(mct_supervisor *supervisor)
 {
     supervisor->latched = 0;
     supervisor->frozen_ticks = 0;
+    supervisor->restless_ticks = 0;
     supervisor->good_ticks = 0;
     supervisor->rearmed++;
+}
+
+void mct_supervisor_watch_balance(mct_supervisor *supervisor, bool is_balancing)
+{
+    if (is_balancing || !supervisor->armed) {
+        supervisor->restless_ticks -= supervisor->restless_ticks > 0;
+    } else if (++supervisor->restless_ticks > supervisor->give_up_limit && supervisor->give_up_limit > 0) {
+        mct_supervisor_fault(supervisor, MCT_FAULT_NO_BALANCE);
+    }
 }
 
 static mct_real size_of(mct_real value)

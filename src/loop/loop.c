@@ -71,6 +71,7 @@ void mct_loop_tick(mct_loop *loop)
         record->mode = loop->controller.mode;
         estimate = loop->controller.observer.x;
         memcpy(record->estimate, estimate, sizeof record->estimate);
+        mct_supervisor_watch_balance(supervisor, record->mode == MCT_MODE_BALANCE);
     } else {
         record->mode = MCT_MODE_OPEN_LOOP;
         record->wanted = mct_input_at(&loop->input, loop->tick);

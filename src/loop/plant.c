@@ -26,6 +26,18 @@ static bool is_sane(const mct_state *state, int states)
     return sane;
 }
 
+/* What has decayed to next to nothing comes to rest. */
+static void settle(mct_plant *plant)
+{
+    mct_state *state = &plant->state;
+    for (int i = 0; i < plant->states; i++) {
+        if (mct_settled(state->x[i]) == 0) {
+            state->x[i] = 0 * state->x[i];
+            state->c[i] = 0 * state->c[i];
+        }
+    }
+}
+
 /*
  * Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone.
  * Turns are subtracted by powers of two from the largest down, so that each difference is exact; the rest of
@@ -215,6 +227,7 @@ void mct_plant_step(mct_plant *plant, mct_real input)
     }
     if (is_sane(&plant->state, plant->entries)) {
         wrap_angles(plant);
+        settle(plant);
     } else {
         for (int i = 0; i < plant->entries; i++) {
             plant->state.x[i] = x[i];

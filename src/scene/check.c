@@ -5,6 +5,7 @@
 #include "mctau/constants.h"
 #include "mctau/matrix.h"
 #include "mctau/stepper.h"
+#include "pace.h"
 #include "text.h"
 
 /* --- sentences --- */
@@ -565,6 +566,77 @@ static mct_status examine_system(const mct_scene *scene, const mct_system *syste
     return MCT_ERROR_UNSUITED;
 }
 
+/* "at pole_angle = 3.14159, where cart_position moves 1e-06 of its inertia" */
+static void add_place_of_pace(mct_message *message, const mct_system *system, const mct_pace *pace)
+{
+    if (pace->coordinate >= 0) {
+        mct_message_add(message, " at ");
+        mct_message_add(message, system->coordinates[pace->coordinate].position.name);
+        mct_message_add(message, " = ");
+        mct_message_add_number(message, pace->angle);
+    }
+    if (pace->share < MCT_SMALL_SHARE) {
+        mct_message_add(message, ", where ");
+        mct_message_add(message, system->coordinates[pace->lightest].position.name);
+        mct_message_add(message, " feels ");
+        mct_message_add_number(message, pace->share);
+        mct_message_add(message, " of its inertia");
+    }
+}
+
+/* "; steps up to 3.9e-06 s do: scene.substeps from 256" */
+static void add_remedy(mct_message *message, const mct_scene *scene, const mct_pace *pace)
+{
+    const mct_field *substeps = NULL;
+    for (int i = 0; i < mct_scene_tables[0].field_count; i++) {
+        if (mct_text_equal(mct_scene_tables[0].fields[i].name, "substeps")) {
+            substeps = &mct_scene_tables[0].fields[i];
+        }
+    }
+    if (pace->longest == 0) {
+        mct_message_add(message, "no step that was tried");
+        return;
+    }
+    const double needed = scene->dt / pace->longest;
+    mct_message_add(message, "steps up to ");
+    mct_message_add_number(message, pace->longest);
+    mct_message_add(message, " s");
+    if (scene->stride > 1 && needed <= 1) {
+        mct_message_add(message, ", a smaller scene.stride");
+    } else if (needed <= substeps->maximum) {
+        mct_message_add(message, ", scene.substeps from ");
+        mct_message_add_integer(message, (long long)(needed + 0.5));
+    } else {
+        mct_message_add(message, ", more than the ");
+        mct_message_add_integer(message, (long long)substeps->maximum);
+        mct_message_add(message, " scene.substeps of a tick: with these a scene.dt up to ");
+        mct_message_add_number(message, substeps->maximum * pace->longest);
+        mct_message_add(message, " s");
+    }
+}
+
+/* Steps that are far too long for what moves. */
+static mct_status examine_pace(const mct_scene *scene, const mct_system *system, mct_blame *blame,
+                               mct_message *sentence)
+{
+    mct_pace pace;
+    mct_pace_find(scene, &pace);
+    if (pace.verdict != MCT_PACE_NOT_FOLLOWED) {
+        return MCT_OK;
+    }
+    blame->table = "scene";
+    blame->key = "dt";
+    mct_message_add(sentence, "found steps of ");
+    mct_message_add_number(sentence, mct_scene_step(scene));
+    mct_message_add(sentence, " s by ");
+    mct_message_add(sentence, mct_steppers[scene->stepper].name);
+    mct_message_add(sentence, ", which do not follow the motion");
+    add_place_of_pace(sentence, system, &pace);
+    mct_message_add(sentence, "; allowed ");
+    add_remedy(sentence, scene, &pace);
+    return MCT_ERROR_UNSUITED;
+}
+
 mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_message *sentence)
 {
     blame->table = "scene";
@@ -584,6 +656,7 @@ mct_status mct_scene_examine(const mct_scene *scene, mct_blame *blame, mct_messa
     status = status != MCT_OK ? status : examine_attitude(scene, system, blame, sentence);
     status = status != MCT_OK ? status : examine_duration(scene, blame, sentence);
     status = status != MCT_OK ? status : examine_system(scene, system, blame, sentence);
+    status = status != MCT_OK ? status : examine_pace(scene, system, blame, sentence);
     return status;
 }
 
@@ -647,12 +720,37 @@ static bool note_quaternion(const mct_scene *scene, const mct_system *system, mc
     return true;
 }
 
+static bool note_pace(const mct_scene *scene, const mct_system *system, mct_message *note)
+{
+    mct_pace pace;
+    mct_pace_find(scene, &pace);
+    if (pace.verdict != MCT_PACE_LONG) {
+        return false;
+    }
+    mct_message_clear(note);
+    mct_message_add(note, "scene.dt: steps of ");
+    mct_message_add_number(note, mct_scene_step(scene));
+    mct_message_add(note, " s by ");
+    mct_message_add(note, mct_steppers[scene->stepper].name);
+    mct_message_add(note, " are long for the motion");
+    add_place_of_pace(note, system, &pace);
+    mct_message_add(note, ": two of half the length change rates by ");
+    mct_message_add_number(note, (int)(100 * pace.error + 0.5));
+    mct_message_add(note, " %; it asks for ");
+    add_remedy(note, scene, &pace);
+    return true;
+}
+
 bool mct_scene_note(const mct_scene *scene, int number, mct_message *note)
 {
     const mct_system *const system = mct_systems[scene->system];
-    const bool has_first = note_quaternion(scene, system, note);
-    return (has_first && number == 0) ||
-           note_idle_coefficient(scene, system, number - (has_first ? 1 : 0), note);
+    if (note_quaternion(scene, system, note) && number-- == 0) {
+        return true;
+    }
+    if (note_pace(scene, system, note) && number-- == 0) {
+        return true;
+    }
+    return note_idle_coefficient(scene, system, number, note);
 }
 
 mct_status mct_scene_check(const mct_scene *scene, mct_message *why)

@@ -82,6 +82,8 @@ static const mct_field controller_fields[] = {
          "a coordinate that is a length stays within +- this"),
     REAL("overspeed", "rad/s", 1, 1e6, 2000, overspeed,
          "rate of an angle beyond which the supervisor cuts the voltage"),
+    REAL("give_up_after", "s", 0, LONGEST, 120, give_up_after,
+         "time without balance, less that with it, after which the supervisor cuts the voltage; 0: never"),
     REAL("rearm_after", "s", 0, 1000, 0, rearm_after,
          "after a fault drive again when feedback has been well for so long; 0: only when asked to"),
     REAL("input_weight", "", 1e-6, 1e6, 1, input_weight, "cost of the voltage; larger is gentler"),

@@ -19,8 +19,8 @@
  *               passes the pivot comes out on the other side: r stays positive, th jumps by half a turn.
  * Validity      m, k > 0; steps short against sqrt(m/k) and m/k1: else refused. With k2 or a torque the equation has no
  *               limit at r = 0: starting where a step does not resolve it is refused, a step that leads there fails
- *               (mct_plant.diverged_ticks). With l0 > 0 the spring's force has a kink at r = 0, and a step across it
- *               is of first order.
+ *               (mct_plant.diverged_ticks). With l0 > 0 the spring's force jumps at r = 0: `rk4` and the series pass
+ *               it in parts of a step (rk4_in_frame); a step of `euler` or `leap` across it is of first order.
  */
 #include "mctau/spring_pendulum.h"
 
@@ -281,6 +281,46 @@ MCT_INLINE void kick_symmetric(const void *self, unsigned effects, const mct_rea
     kick(self, effects, y, inverse_of(y), u, MCT_R(0.5), dy);
 }
 
+/*
+ * Classical Runge-Kutta in the frame. With a rest length the spring's force turns as the ball passes the pivot, all at
+ * once at the pivot itself. So near it a step is made in parts, each a quarter of the time in which the force turns,
+ * but no shorter than SHORTEST_PART of the step: what the jump costs is of that size.
+ */
+#define SHORTEST_PART (MCT_REAL_IS_FLOAT ? MCT_R(0x1p-16) : MCT_R(0x1p-28))
+#define MOST_PARTS    192 /* towards the pivot R shrinks to 3/4 a part, behind it grows to 5/4 */
+
+RARE void rk4_in_frame(const frame *now, unsigned effects, const mct_real *y, mct_real u, mct_real *dy)
+{
+    const constants_t *k = now->k;
+    const mct_real h = k->step.h;
+    const mct_real rest = (effects & MCT_SPRING) ? k->rest_rate : 0;
+    const mct_real speed_square = y[2] * y[2] + y[3] * y[3];
+    if (!(rest > 0) || 16 * h * h * (speed_square + rest * y[0]) <= y[0] * y[0]) {
+        mct_rk4_plain(derivative, now, k->step, effects, 2, y, u, dy);
+        return;
+    }
+    mct_real left = h;
+    mct_real at[4] = {y[0], y[1], y[2], y[3]};
+    for (int part = 1; left > 0; part++) {
+        const mct_real square = square_of(at);
+        const mct_real length = square * mct_inverse_root(square);
+        const mct_real turning = at[2] * at[2] + at[3] * at[3] + rest * length;
+        mct_real time = MCT_R(0.25) * length * mct_inverse_root(turning);
+        time = time > SHORTEST_PART * h ? time : SHORTEST_PART * h;
+        time = time < left && part < MOST_PARTS ? time : left;
+        const mct_step step = {.h = time, .half = MCT_R(0.5) * time, .sixth = time / 6};
+        mct_real change[4];
+        mct_rk4_plain(derivative, now, step, effects, 2, at, u, change);
+        for (int i = 0; i < 4; i++) {
+            at[i] += change[i];
+        }
+        left -= time;
+    }
+    for (int i = 0; i < 4; i++) {
+        dy[i] = at[i] - y[i];
+    }
+}
+
 /* Term n + 1 of p = 1/R from R^2 = q: 2 q p' = - q' p. */
 MCT_INLINE mct_real next_inverse(const mct_real *square, const mct_real *inverse, mct_real by_square, int n)
 {
@@ -309,7 +349,7 @@ MCT_INLINE void taylor_in_frame(const frame *now, unsigned effects, int order, c
     const bool has_inverse = has_rest || is_turned;
     /* 1/R is singular at a complex time R/|Xd| from here: a step that comes half as far is rk4's. */
     if (has_inverse && 4 * h * h * (y[2] * y[2] + y[3] * y[3]) * by_square > 1) {
-        mct_rk4_plain(derivative, now, k->step, effects, 2, y, u, dy);
+        rk4_in_frame(now, effects, y, u, dy);
         return;
     }
     mct_series X, Y, Xd, Yd, square, along, inverse, inverse_square, across, rate, pull, turning;
@@ -511,7 +551,7 @@ STEP_IN_FRAME(MCT_INLINE, framed_leap, mct_leap(kick_symmetric, &now, k->step, e
 STEP_IN_FRAME(MCT_INLINE, framed_taylor, taylor_in_frame(&now, effects, order, y, u, dy))
 STEP_IN_FRAME(MCT_INLINE, framed_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
 STEP_IN_FRAME(RARE, rare_taylor, taylor_in_frame(&now, effects, order, y, u, dy))
-STEP_IN_FRAME(RARE, rare_rk4, mct_rk4_plain(derivative, &now, k->step, effects, 2, y, u, dy))
+STEP_IN_FRAME(RARE, rare_rk4, rk4_in_frame(&now, effects, y, u, dy))
 
 /* ---- away from the pivot ---- */
 

@@ -309,6 +309,22 @@ static void test_a_position_does_not_drift_in_1e7_ticks(void)
     TEST_ASSERT_DOUBLE_WITHIN(count_error(), 22.2, (double)self.observer.x[3]);
 }
 
+/* A deviation fades by p^2 a tick, in 2 s through all numbers there are. */
+static void test_at_a_standstill_the_estimate_comes_to_rest_and_not_into_denormal_numbers(void)
+{
+    const mct_scene scene = forceless(0, 32);
+    bench self;
+    start(&self, &scene, 0);
+    for (int tick = 0; tick < 10000; tick++) {
+        feed(&self, tick < 100 ? 0.01 * tick : 1, 0);
+    }
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_TRUE(self.observer.x[2 + i] == 0);
+        TEST_ASSERT_TRUE(self.observer.encoders[i].deviation == 0);
+        TEST_ASSERT_DOUBLE_WITHIN(UNIT, 1, (double)self.observer.x[i]);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -323,5 +339,6 @@ int main(void)
     RUN_TEST(test_a_jump_after_a_long_gap_moves_the_position_and_not_the_rate);
     RUN_TEST(test_nothing_is_estimated_before_the_first_valid_reading);
     RUN_TEST(test_a_position_does_not_drift_in_1e7_ticks);
+    RUN_TEST(test_at_a_standstill_the_estimate_comes_to_rest_and_not_into_denormal_numbers);
     return UNITY_END();
 }

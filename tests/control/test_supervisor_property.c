@@ -240,6 +240,54 @@ static void test_a_wheel_beyond_its_speed_latches_overspeed(void)
     check_latched(MCT_FAULT_OVERSPEED, "overspeed");
 }
 
+/* By default after 120 s; balance pays for as much restlessness later. */
+static void test_driving_without_balance_for_too_long_latches_no_balance(void)
+{
+    static const struct {
+        int balance, restless; /* ticks, in turn */
+        int least, most;       /* until the fault; 0: never */
+    } cases[] = {{0, 1, 120001, 120003}, {1, 3, 239990, 240010}, {1, 1, 0, 0}, {3, 1, 0, 0}};
+    for (int i = 0; i < 4; i++) {
+        int ticks = 0;
+        start(REACTION_WHEEL);
+        for (; gate.latched == 0 && ticks < 500000; ticks++) {
+            const int phase = ticks % (cases[i].balance + cases[i].restless);
+            mct_supervisor_watch_balance(&gate, phase < cases[i].balance);
+            pass(5);
+        }
+        if (cases[i].most == 0) {
+            TEST_ASSERT_EQUAL_UINT32(0, gate.latched);
+        } else {
+            TEST_ASSERT_TRUE(ticks >= cases[i].least && ticks <= cases[i].most);
+            check_latched(MCT_FAULT_NO_BALANCE, "no_balance");
+            mct_supervisor_watch_balance(&gate, false);
+            TEST_ASSERT_EQUAL_UINT32(0, gate.latched); /* it has all its time again */
+        }
+    }
+}
+
+static void test_what_is_not_driven_may_wait_for_balance_for_ever(void)
+{
+    for (int ticks = 0; ticks < 300000; ticks++) {
+        reading.flags = MCT_READING_NOT_READY;
+        mct_supervisor_watch_balance(&gate, false);
+        TEST_ASSERT_TRUE(pass(5) == 0);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, gate.latched);
+}
+
+static void test_without_a_time_to_give_up_it_never_does(void)
+{
+    mct_scene scene = swing_up_scene(REACTION_WHEEL);
+    scene.give_up_after = 0;
+    mct_supervisor_init(&gate, &scene);
+    for (int ticks = 0; ticks < 300000; ticks++) {
+        mct_supervisor_watch_balance(&gate, false);
+        pass(5);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, gate.latched);
+}
+
 static void test_faults_from_outside_are_latched_under_their_names(void)
 {
     pass(5);
@@ -441,6 +489,9 @@ int main(void)
     RUN_TEST(test_a_wanted_voltage_that_is_not_finite_latches_its_fault);
     RUN_TEST(test_a_cart_that_leaves_its_track_latches_track_end);
     RUN_TEST(test_a_wheel_beyond_its_speed_latches_overspeed);
+    RUN_TEST(test_driving_without_balance_for_too_long_latches_no_balance);
+    RUN_TEST(test_what_is_not_driven_may_wait_for_balance_for_ever);
+    RUN_TEST(test_without_a_time_to_give_up_it_never_does);
     RUN_TEST(test_faults_from_outside_are_latched_under_their_names);
     RUN_TEST(test_a_cause_that_persists_latches_again);
     RUN_TEST(test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_zero_in_doubt);

@@ -184,6 +184,36 @@ static void test_several_turns_taken_out_of_one_tick_lose_nothing(void)
     check_turns_taken_out(-45000);
 }
 
+/* A rate that decays by 5/s goes through all numbers there are in 150 s. */
+static void test_what_has_decayed_to_next_to_nothing_is_zero(void)
+{
+    mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, MCT_VISCOUS);
+    *parameter_of(&scene, "pole_friction") = 0.5;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        mct_plant plant;
+        scene.initial[2] = sign;
+        scene.initial[3] = sign;
+        start_plant(&plant, &scene);
+        for (int k = 0; k < 200000; k++) {
+            mct_plant_step(&plant, 0);
+        }
+        for (int i = 2; i < 4; i++) {
+            TEST_ASSERT_TRUE(plant.state.x[i] == 0 && plant.state.c[i] == 0);
+        }
+        TEST_ASSERT_TRUE(plant.state.x[0] * (mct_real)sign > 0);
+    }
+}
+
+/* The bound itself is kept: nothing larger is touched. */
+static void test_what_is_settled_is_below_the_bound_and_nothing_else(void)
+{
+    const mct_real nothing = MCT_REAL_NOTHING;
+    TEST_ASSERT_TRUE(mct_settled(nothing) == nothing && mct_settled(-nothing) == -nothing);
+    TEST_ASSERT_TRUE(mct_settled(nothing / 2) == 0 && !signbit(mct_settled(nothing / 2)));
+    TEST_ASSERT_TRUE(mct_settled(-nothing / 2) == 0 && signbit(mct_settled(-nothing / 2)));
+    TEST_ASSERT_TRUE(isnan(mct_settled((mct_real)NAN)));
+}
+
 static void test_upright_exactly_stays_upright_for_1e6_ticks(void)
 {
     for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
@@ -291,6 +321,8 @@ int main(void)
     RUN_TEST(test_a_wheel_at_1e4_rad_per_s_keeps_its_angle);
     RUN_TEST(test_one_or_two_turns_taken_out_of_a_tick_lose_nothing);
     RUN_TEST(test_several_turns_taken_out_of_one_tick_lose_nothing);
+    RUN_TEST(test_what_has_decayed_to_next_to_nothing_is_zero);
+    RUN_TEST(test_what_is_settled_is_below_the_bound_and_nothing_else);
     RUN_TEST(test_upright_exactly_stays_upright_for_1e6_ticks);
     RUN_TEST(test_the_supply_bounds_the_voltage_with_saturation_and_a_motor_only);
     RUN_TEST(test_the_drive_bounds_the_current_where_saturation_says_so);

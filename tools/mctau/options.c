@@ -140,7 +140,10 @@ static bool take_operand(arguments *self, int argc, char **argv, int *exit_code)
 {
     const verb *asked = self->verb;
     const int allowed = asked->operand != NULL ? 1 : 0;
-    if (argc - optind > allowed) {
+    const bool any = allowed == 1 && strstr(asked->operand, "...") != NULL;
+    self->operands = argv + optind;
+    self->operand_count = argc - optind;
+    if (argc - optind > allowed && !any) {
         *exit_code =
             say(EXIT_USAGE, "%s: found one argument too many: %s; usage: mctau %s %s [options]", asked->name,
                 argv[optind + allowed], asked->name, asked->operand != NULL ? asked->operand : "");

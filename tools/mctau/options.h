@@ -35,8 +35,9 @@ struct arguments;
 
 typedef struct {
     const char *name;
-    const char *doc;       /* one line, for the list of verbs */
-    const char *operand;   /* what its one operand is called, "[...]" when it may be left out */
+    const char *doc; /* one line, for the list of verbs */
+    const char *
+        operand; /* what its one operand is called, "[...]" when it may be left out, "...]" when there may be more */
     const char *text;      /* what it does and what comes out */
     const option *options; /* ends with an empty row */
     const char *examples;  /* one a line */
@@ -48,7 +49,9 @@ typedef struct {
 typedef struct arguments {
     const char *program; /* as called: what hints name */
     const verb *verb;
-    const char *operand;             /* NULL when left out */
+    const char *operand;   /* NULL when left out */
+    char *const *operands; /* all of them, where there may be more than one */
+    int operand_count;
     const char *values[MAX_OPTIONS]; /* by row of the verb's table; NULL when not given, "" for a switch */
     mct_override *overrides;         /* --set and the short cuts, in their order */
     int override_count;

@@ -140,4 +140,8 @@ const mct_runner MCT_RUNNER = {
     .loop = runner_loop,
     .depart = runner_depart,
     .time_scale = runner_time_scale,
+    .hard_case_after = hard_case_after,
+    .hard_run_case = hard_run_case,
+    .hard_judge = hard_judge,
+    .hard_criterion = hard_criterion,
 };

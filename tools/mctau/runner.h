@@ -18,6 +18,7 @@
 #include "mctau/scene.h"
 #include "mctau/status.h"
 #include "powers.h"
+#include "tools/hard/hard.h"
 
 #define RUNNER_MAX_STATES      16
 #define RUNNER_MAX_COORDINATES 16
@@ -242,6 +243,11 @@ typedef struct {
      * else by how the accelerations that it brings respond to the state. NaN where it has none.
      */
     double (*time_scale)(const mct_scene *with, const mct_scene *without, const course *along);
+    /* Hard cases: see tools/hard/hard.h. */
+    const hard_case *(*hard_case_after)(int number);
+    void (*hard_run_case)(const hard_case *about, bool is_full, hard_result results[HARD_METHOD_COUNT]);
+    hard_verdict (*hard_judge)(const hard_case *about, const hard_result *result);
+    double (*hard_criterion)(const hard_case *about);
 } mct_runner;
 
 extern const mct_runner mct_runner_f64;

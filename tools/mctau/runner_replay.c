@@ -348,11 +348,11 @@ static bool has_tick_shape(const replay *self)
            big_endian_32(data + COUNTS_AT + 12) == (uint32_t)shape.estimates;
 }
 
-/* A HAL that fails, and a stop, come from outside: they are latched here as they were in the run. They leave
+/* A HAL that fails, a stop, and energy from nowhere, come from outside: they are latched here as they were in the run. They leave
  * no voltage. */
 static void inject_faults(replay *self)
 {
-    const uint32_t outside = 1u << MCT_FAULT_HAL | 1u << MCT_FAULT_STOPPED;
+    const uint32_t outside = 1u << MCT_FAULT_HAL | 1u << MCT_FAULT_STOPPED | 1u << MCT_FAULT_ENERGY;
     const uint32_t recorded = (uint32_t)self->recorded.faults;
     const uint32_t new_ones = recorded & outside & ~self->loop.supervisor.latched;
     self->injected = self->recorded.applied == 0 ? new_ones : 0;

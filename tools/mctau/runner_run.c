@@ -23,6 +23,7 @@
 #include "hal/socketcan/drive.h"
 #include "hal/socketcan/socket.h"
 #include "mctau/loop.h"
+#include "mctau/watch.h"
 #include "say.h"
 #if MCTAU_HAVE_LCM
 #include "hal/lcm/telemetry.h"
@@ -42,6 +43,7 @@ typedef struct {
     mct_ring ring;
     /* the hardware, one of them by the name that the scene gives */
     mct_sim sim;
+    mct_watch watch; /* of the energy in sim */
     mct_can can;
     mct_can_socket socket;
     mct_can_candump log;
@@ -385,7 +387,11 @@ static mct_status choose_hal(run *self, mct_hal *hal, mct_message *why)
         self->clock = &self->sim.clock;
         self->mechanism = &self->sim.plant;
         *hal = mct_sim_hal(&self->sim);
-        return mct_sim_init(&self->sim, scene, why);
+        const mct_status status = mct_sim_init(&self->sim, scene, why);
+        if (status == MCT_OK) {
+            mct_watch_start(&self->watch, &self->sim.plant, scene);
+        }
+        return status;
     }
     if (strcmp(scene->hal, "ring") == 0) {
         return use_ring(self, hal, why);
@@ -471,6 +477,9 @@ static void tick(run *self)
         self->telemetry_is_stuck = false;
     }
     mct_loop_tick(loop);
+    if (self->mechanism == &self->sim.plant && !mct_watch_tick(&self->watch, self->mechanism)) {
+        mct_supervisor_fault(&loop->supervisor, MCT_FAULT_ENERGY);
+    }
     track_deviation(self, loop->tick);
     tell_ledger(self);
     const mct_real applied = loop->record.applied;

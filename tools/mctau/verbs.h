@@ -12,5 +12,6 @@ extern const verb verb_drive;
 extern const verb verb_cost;
 extern const verb verb_pick;
 extern const verb verb_advise;
+extern const verb verb_hard;
 
 #endif
