@@ -355,6 +355,7 @@ static int run_verb(const arguments *given)
     } else {
         print_text(&self);
     }
+    const int found = exit_code_of(&self);
     free(self.rows);
-    return exit_code_of(&self);
+    return found;
 }
