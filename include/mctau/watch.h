@@ -18,14 +18,14 @@
 
 typedef struct {
     bool is_watched;
-    double dt;        /**< the tick [s] */
-    double energy;    /**< at the start [J] */
-    double work;      /**< of the input since then; losses in the motor's resistance are not taken off [J] */
-    double rounding;  /**< of the work, at most [J] */
+    double dt;       /**< the tick [s] */
+    double energy;   /**< at the start [J] */
+    double work;     /**< of the input since then; losses in the motor's resistance are not taken off [J] */
+    double rounding; /**< of the work, at most [J] */
     double force[MCT_MAX_COORDINATES]; /**< of a force, torque or quasi-static motor, per unit of the input */
     double before[MCT_MAX_STATES];     /**< at the last tick */
     mct_real fastest[MCT_MAX_COORDINATES]; /**< largest size of each rate since the last look */
-    uint64_t impossible;               /**< looks that found energy from nowhere */
+    uint64_t impossible;                   /**< looks that found energy from nowhere */
 } mct_watch;
 
 /** Starts at the present state of a plant of this scene. Costs three evaluations. */

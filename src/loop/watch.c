@@ -5,8 +5,7 @@
 #include "mctau/matrix.h"
 
 /* What does work that is not followed here. */
-#define OTHER_SOURCES \
-    (MCT_CLOCK | MCT_FORCES | MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE)
+#define OTHER_SOURCES (MCT_CLOCK | MCT_FORCES | MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE)
 
 /* Of what is in motion: more than this cannot have come from errors of steps that follow the motion. */
 #define IMPOSSIBLE 0.5
@@ -66,8 +65,7 @@ void mct_watch_start(mct_watch *watch, const mct_plant *plant, const mct_scene *
         watch->before[i] = mct_plant_value(plant, i);
     }
     mct_plant_evaluate(plant, &e);
-    watch->energy =
-        (double)e.kinetic_energy + (double)e.potential_energy + (double)e.magnetic_energy;
+    watch->energy = (double)e.kinetic_energy + (double)e.potential_energy + (double)e.magnetic_energy;
     find_force(watch, plant);
 }
 
