@@ -38,7 +38,10 @@ typedef struct {
     int numbers;
 } fact;
 
-#define ON_AXIS_2 {0.05, 0, 0.1, 0.1, 0, 0.3}
+#define ON_AXIS_2                 \
+    {                             \
+        0.05, 0, 0.1, 0.1, 0, 0.3 \
+    }
 static const fact facts[] = {
     {"cart_pole", 0, 0x1F, 0, {{0}}, {{"pole_angle", 0}}, {0}, 0},
     {"reaction_wheel", 0, 0x1F, 0, {{0}}, {{"arm_angle", 0}}, {0}, 0},
@@ -49,24 +52,10 @@ static const fact facts[] = {
     {"particle_pendulum", 0, 0x3, 0, {{0}}, {{"angle", 0}}, ON_AXIS_2, 6},
     {"moving_base", 0, 0x3, 0, {{0}}, {{"angle", 0}}, {0}, 0}, /* shaken upwards; its phases go on */
     /* half a turn about the axis of the frame */
-    {"rotating_frame",
-     MCT_GRAVITY,
-     0x1B,
-     MCT_GRAVITY,
-     {{0}},
-     {{"position_2", 0}},
-     {0},
-     0},
+    {"rotating_frame", MCT_GRAVITY, 0x1B, MCT_GRAVITY, {{0}}, {{"position_2", 0}}, {0}, 0},
     /* across the plane of axes 1 and 2: a turn about an axis in that plane changes its sign */
-    {"ball_joint",
-     0,
-     0x36,
-     0,
-     {{0}},
-     {{0}},
-     {0},
-     0},
-    {"fixed_axis", 0, 0x3, 0, {{"axis_1", 0}}, {{0}}, {0}, 0}, /* a vertical one */
+    {"ball_joint", 0, 0x36, 0, {{0}}, {{0}}, {0}, 0},
+    {"fixed_axis", 0, 0x3, 0, {{"axis_1", 0}}, {{0}}, {0}, 0},             /* a vertical one */
     {"solid_pendulum", 0, 0x3, 0, {{"pivot_offset", 0.5}}, {{0}}, {0}, 0}, /* on an axle through its centre */
     {"rigid_body", MCT_FORCES, 0xE34, MCT_GRAVITY | MCT_FORCES, {{0}}, {{0}}, {0}, 0},
     {"block", MCT_GRAVITY | MCT_FORCING, 0x3, MCT_FORCING, {{"slope", 0.2}}, {{0}}, {0}, 0},
@@ -135,7 +124,8 @@ static void check_mirror(const fact *self, mct_scene *scene, test_random *random
     start_plant(&plants[0], scene);
     start_plant(&plants[1], &mirrored);
     for (int tick = 0; tick < 1000; tick++) {
-        const mct_real input = (mct_real)(tick % 10 == 0 ? random_in(random, -1, 1) : (double)plants[0].input);
+        const mct_real input =
+            (mct_real)(tick % 10 == 0 ? random_in(random, -1, 1) : (double)plants[0].input);
         mct_plant_step(&plants[0], input);
         mct_plant_step(&plants[1], -input);
         for (int i = 0; i < states; i++) {
@@ -162,8 +152,7 @@ static void test_a_mirrored_start_under_a_mirrored_input_gives_the_mirrored_moti
             mct_scene scene = scene_by(&facts[i]);
             const mct_system *system = mct_systems[scene.system];
             scene.effects = drawn_effects(&random, system) & ~facts[i].not_mirrored;
-            FOR_EACH_STEPPER(stepper, scene.system, mct_scene_effects(&scene) & MCT_KERNEL_EFFECTS)
-            {
+            FOR_EACH_STEPPER (stepper, scene.system, mct_scene_effects(&scene) & MCT_KERNEL_EFFECTS) {
                 mct_scene one = scene;
                 one.stepper = stepper;
                 check_mirror(&facts[i], &one, &random);
@@ -209,19 +198,19 @@ static void test_an_equilibrium_stays_one_exactly(void)
             for (int k = 0; k < MOST_SETTINGS && facts[i].rest[k].name != NULL; k++) {
                 set_state(&scene, facts[i].rest[k].name, facts[i].rest[k].value);
             }
-            FOR_EACH_STEPPER(stepper, scene.system, mct_scene_effects(&scene) & MCT_KERNEL_EFFECTS)
-            {
+            FOR_EACH_STEPPER (stepper, scene.system, mct_scene_effects(&scene) & MCT_KERNEL_EFFECTS) {
                 scene.stepper = stepper;
                 start_plant(&plant, &scene);
                 const mct_state start = plant.state;
                 step_plant(&plant, 0, TEST_CASES(TICKS));
                 char text[200];
-                snprintf(text, sizeof text, "%s by %s, effects %x: %g", system->name, mct_steppers[stepper].name,
-                         (unsigned)scene.effects, mct_plant_value(&plant, 0));
+                snprintf(text, sizeof text, "%s by %s, effects %x: %g", system->name,
+                         mct_steppers[stepper].name, (unsigned)scene.effects, mct_plant_value(&plant, 0));
                 for (int k = 0; k < plant.states; k++) {
-                    TEST_ASSERT_TRUE_MESSAGE(mct_state_is_phase(system, k) || (plant.state.x[k] == start.x[k] &&
-                                                                               plant.state.c[k] == start.c[k]),
-                                             text);
+                    TEST_ASSERT_TRUE_MESSAGE(
+                        mct_state_is_phase(system, k) ||
+                            (plant.state.x[k] == start.x[k] && plant.state.c[k] == start.c[k]),
+                        text);
                 }
             }
         }
@@ -264,8 +253,8 @@ static void test_a_motion_that_is_turned_back_returns_to_its_start(void)
                 worst = fmax(worst, fabs(mct_plant_value(&plant, i) - start[i]));
             }
             const double roundings = worst / ((double)MCT_REAL_EPSILON * fmax(1, fastest));
-            printf("%-18s %-7s%s: off by %.2g, %.2g roundings\n", plant.system->name, mct_steppers[stepper].name,
-                   s % 2 == 0 ? "" : " without weight", worst, roundings);
+            printf("%-18s %-7s%s: off by %.2g, %.2g roundings\n", plant.system->name,
+                   mct_steppers[stepper].name, s % 2 == 0 ? "" : " without weight", worst, roundings);
             /* A tenth of one in each step: a top under its weight adds them up; others have fewer than ten in all. */
             TEST_ASSERT_TRUE_MESSAGE(roundings < STEPS / 10, plant.system->name);
             runs++;
