@@ -90,8 +90,10 @@ mct_status fuzz_try(const mct_scene *scene, trial *asked, mct_message *why)
     return runner_try(scene, asked, why);
 }
 
-mct_status fuzz_drive(const mct_scene *scene, const drive_options *options, drive_result *result, mct_message *why);
-mct_status fuzz_drive(const mct_scene *scene, const drive_options *options, drive_result *result, mct_message *why)
+mct_status fuzz_drive(const mct_scene *scene, const drive_options *options, drive_result *result,
+                      mct_message *why);
+mct_status fuzz_drive(const mct_scene *scene, const drive_options *options, drive_result *result,
+                      mct_message *why)
 {
     (void)scene;
     (void)options;
@@ -148,8 +150,8 @@ static void clear_folder(void)
     must(all != NULL, "opendir");
     for (struct dirent *entry = readdir(all); entry != NULL; entry = readdir(all)) {
         const size_t length = strlen(entry->d_name);
-        FUZZ_RULE(length < 4 || strcmp(entry->d_name + length - 4, ".tmp") != 0, "no unfinished file is left: %s",
-                  entry->d_name);
+        FUZZ_RULE(length < 4 || strcmp(entry->d_name + length - 4, ".tmp") != 0,
+                  "no unfinished file is left: %s", entry->d_name);
         if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0) {
             must(unlink(entry->d_name) == 0, entry->d_name);
         }
@@ -160,7 +162,8 @@ static void clear_folder(void)
 static void give_texts(void)
 {
     static const char *const texts[LOG] = {
-        "[scene]\nsystem = \"reaction_wheel\"\nstepper = \"expo\"\n[effects]\nmotor = \"inductive\"\n[initial]\n"
+        "[scene]\nsystem = \"reaction_wheel\"\nstepper = \"expo\"\n[effects]\nmotor = "
+        "\"inductive\"\n[initial]\n"
         "arm_angle = 3.0\n[controller]\nkind = \"swing_up_balance\"\n[sensors]\nnoise = 0.5\n",
         "[scene]\nsystem = \"cart_pole\"\nstepper = \"taylor6\"\n[effects]\nmotor = \"none\"\n",
         "[scene]\nsystem = \"cart_pole\"\nstepper = \"rk4\"\n[input]\nkind = \"csv\"\nfile = \"input.csv\"\n"

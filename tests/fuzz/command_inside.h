@@ -11,11 +11,11 @@
 #include <unistd.h>
 
 #undef stderr
-#define stderr         fuzz_stderr
-#define main           fuzz_main
-#define exit           fuzz_exit
-#define fork           fuzz_fork
-#define mct_scene_read fuzz_scene_read
+#define stderr                            fuzz_stderr
+#define main                              fuzz_main
+#define exit                              fuzz_exit
+#define fork                              fuzz_fork
+#define mct_scene_read                    fuzz_scene_read
 #define sigaction(number, action, before) fuzz_sigaction() /* signals are the fuzzer's */
 
 extern FILE *fuzz_stderr;

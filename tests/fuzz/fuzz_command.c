@@ -18,9 +18,10 @@ enum { VERBS = (int)(sizeof verbs / sizeof verbs[0]) };
 
 /* What may stand behind an option, or anywhere. */
 static const char *const values[] = {
-    "0",    "1",    "-1",   "0.001", "0.002", "0.01",   "1e-9",         "1e9",       "1e400", "nan",
-    "-inf", "true", "",     "-",     "--",    "double", "float",        "auto",      "rk4",   "seed",
-    "ring", "sim",  "\"x\"", "[1,2]", "out.csv", "none", "candump:bus.log", "viscous", "h",    "--set"};
+    "0",       "1",    "-1",   "0.001", "0.002", "0.01",  "1e-9",    "1e9",   "1e400",
+    "nan",     "-inf", "true", "",      "-",     "--",    "double",  "float", "auto",
+    "rk4",     "seed", "ring", "sim",   "\"x\"", "[1,2]", "out.csv", "none",  "candump:bus.log",
+    "viscous", "h",    "--set"};
 enum { VALUES = (int)(sizeof values / sizeof values[0]) };
 
 typedef struct {
@@ -42,7 +43,8 @@ static const option *draw_option(fuzz_bytes *input, const verb *of)
 static void draw_assignment(fuzz_bytes *input, char *word)
 {
     const mct_scene_table *table = &mct_scene_tables[fuzz_byte(input) % MCT_SCENE_TABLE_COUNT];
-    const mct_field *field = &table->fields[fuzz_byte(input) % (table->field_count > 0 ? table->field_count : 1)];
+    const mct_field *field =
+        &table->fields[fuzz_byte(input) % (table->field_count > 0 ? table->field_count : 1)];
     const int number = fuzz_byte(input);
     const char *value = values[number % VALUES];
     if (field->choices != NULL && number >= VALUES) {
@@ -115,7 +117,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int exit_code = fuzz_command(self.argc, self.argv);
     const char *said = fuzz_command_said();
     FUZZ_RULE(exit_code >= 0 && exit_code <= 3, "an exit code that is documented: %d", exit_code);
-    FUZZ_RULE(exit_code < 2 || strncmp(said, "mctau: ", 7) == 0, "a refusal has a reason: %d, %s", exit_code, said);
+    FUZZ_RULE(exit_code < 2 || strncmp(said, "mctau: ", 7) == 0, "a refusal has a reason: %d, %s", exit_code,
+              said);
     return 0;
 }
 
@@ -128,8 +131,9 @@ size_t fuzz_seed(int number, uint8_t *out)
                 continue;
             }
             const bool is_log = verbs[i] == &verb_replay;
-            const uint8_t words[] = {(uint8_t)i, 4, (uint8_t)(is_log ? 5 : j % 3), 1, (uint8_t)j, 6, (uint8_t)(j % VALUES),
-                                     1,          0, 6, 4};
+            const uint8_t words[] = {
+                (uint8_t)i, 4, (uint8_t)(is_log ? 5 : j % 3), 1, (uint8_t)j, 6, (uint8_t)(j % VALUES), 1, 0,
+                6,          4};
             memcpy(out, words, sizeof words);
             return sizeof words;
         }

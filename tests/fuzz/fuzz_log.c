@@ -23,8 +23,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int exit_code = replay();
     const char *said = fuzz_command_said();
     FUZZ_RULE(exit_code >= 0 && exit_code <= 3, "an exit code that is documented: %d", exit_code);
-    FUZZ_RULE((exit_code >= 2) == (said[0] != '\0'), "a log that is not replayed to its end has a reason: %d, %s",
-              exit_code, said);
+    FUZZ_RULE((exit_code >= 2) == (said[0] != '\0'),
+              "a log that is not replayed to its end has a reason: %d, %s", exit_code, said);
     if (exit_code >= 2) {
         FUZZ_RULE(strncmp(said, begin, sizeof begin - 1) == 0, "the reason names the log: %s", said);
         FUZZ_RULE(strchr(said, '\n') == said + strlen(said) - 1, "the reason is one line: %s", said);
