@@ -28,6 +28,7 @@ enum {
     HEALTH_SIZE =
         256 + 8 * (4 * (MCT_HISTOGRAM_BINS + 1) + MCT_FAULT_COUNT + MCT_MODE_COUNT + MCT_MAX_COUNTERS),
     NO_FILE = -1,
+    MOST_WRITES = 1000,     /* of one buffer */
     EVENT_HEADER = 28,      /* bytes of a log's event before its channel */
     HEALTHS_PER_SCENE = 10, /* the scene is repeated every second */
     STACK_SIZE = 256 * 1024,
@@ -57,18 +58,21 @@ static void fail_log(mct_telemetry *self, int reason)
     log->file = NO_FILE;
 }
 
+/* @return 0, or why not all of it was written */
 static int write_all(int file, const uint8_t *bytes, size_t length)
 {
-    while (length > 0) {
+    int reason = EIO; /* nothing is written, and nobody says why */
+    for (int tries = 0; length > 0 && tries < MOST_WRITES; tries++) {
         const ssize_t written = write(file, bytes, length);
         if (written > 0) {
             bytes += written;
             length -= (size_t)written;
-        } else if (written == 0 || errno != EINTR) {
-            return written == 0 ? EIO : errno;
+        } else if (written < 0) {
+            reason = errno;
+            tries = reason == EINTR ? tries : MOST_WRITES;
         }
     }
-    return 0;
+    return length > 0 ? reason : 0;
 }
 
 static void flush_log(mct_telemetry *self)

@@ -9,8 +9,9 @@
  *   ever   every call of its kind from there on
  *   part   a write: half of its bytes are taken; the writes after it fail
  *   kill   the command is killed ahead of it
- *   torn   the command is killed when half of a write's bytes are taken
- * REPORT gets a line "NAME DESCRIPTOR" for each call that was counted, what stands at the descriptor for NAME write.
+ *   torn   the command is killed when half the bytes of a write are taken, the first one from there on
+ * REPORT gets a line "NAME FAILED FILE" for each call that was counted: FAILED is 1 or 0, FILE that of a
+ * write, fsync or close.
  * The exit code is that of the command, or 128 + its signal; 99 when it cannot be traced.
  */
 #define _GNU_SOURCE
@@ -27,7 +28,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { NOT_TRACED = 99, MOST_THREADS = 64 };
+enum { NOT_TRACED = 99, MOST_THREADS = 64, FILE_SIZE = 1024 };
 
 /* Left out are calls that cannot fail when they are called rightly (masks of signals, futexes, unmapping). */
 static const struct {
@@ -96,6 +97,7 @@ static struct {
     struct {
         pid_t id;
         bool inside, fails, torn;
+        long result;
     } threads[MOST_THREADS];
 } self;
 
@@ -124,42 +126,54 @@ static bool names_the_file(pid_t id, unsigned long address)
            strcmp(path, self.begin) == 0;
 }
 
-static void note(pid_t id, const char *name, unsigned long descriptor)
+/* The file that a call hands something over to, "" for other calls. */
+static void find_file(pid_t id, long number, unsigned long descriptor, char file[FILE_SIZE])
 {
-    char link[64], target[1024] = "";
+    char link[64];
+    const bool gives = number == SYS_write || number == SYS_fsync || number == SYS_close;
     snprintf(link, sizeof link, "/proc/%d/fd/%lu", (int)id, descriptor);
-    const bool has_descriptor = strcmp(name, "write") == 0;
-    const ssize_t length = has_descriptor ? readlink(link, target, sizeof target - 1) : 0;
-    target[length > 0 ? length : 0] = '\0';
-    fprintf(self.report, "%s %s\n", name, target);
+    const ssize_t length = gives ? readlink(link, file, FILE_SIZE - 1) : 0;
+    file[length > 0 ? length : 0] = '\0';
+}
+
+/* What becomes of a call: true when it fails. */
+static bool spoil(pid_t id, int slot, struct user_regs_struct *registers)
+{
+    const long number = (long)registers->orig_rax;
+    const bool chosen = ++self.count == self.at;
+    if (chosen && is_manner("kill")) {
+        kill(self.child, SIGKILL);
+        return true;
+    }
+    if (is_manner("torn")) {
+        self.threads[slot].torn = self.count >= self.at && number == SYS_write;
+        registers->rdx /= self.threads[slot].torn ? 2 : 1;
+    } else if (chosen && is_manner("part") && number == SYS_write) {
+        registers->rdx /= 2;
+        self.failing = number;
+    } else if (chosen || self.failing == number) {
+        self.failing = is_manner("ever") ? number : self.failing;
+        self.threads[slot].fails = true;
+        self.threads[slot].result =
+            number == SYS_brk ? 0 : -self.error; /* brk gives an end that is too low */
+        registers->orig_rax = (unsigned long)-1; /* no call at all */
+    } else {
+        return false;
+    }
+    ptrace(PTRACE_SETREGS, id, NULL, registers);
+    return self.threads[slot].fails;
 }
 
 static void enter(pid_t id, int slot, struct user_regs_struct *registers)
 {
     const long number = (long)registers->orig_rax;
     const char *name = name_of(number);
-    self.began |= name != NULL && number == SYS_openat && names_the_file(id, registers->rsi);
-    if (!self.began || name == NULL) {
-        return;
-    }
-    const bool chosen = ++self.count == self.at;
-    note(id, name, registers->rdi);
-    if (chosen && is_manner("kill")) {
-        kill(self.child, SIGKILL);
-        return;
-    }
-    if (chosen && number == SYS_write && (is_manner("part") || is_manner("torn"))) {
-        registers->rdx /= 2;
-        ptrace(PTRACE_SETREGS, id, NULL, registers);
-        self.threads[slot].torn = is_manner("torn");
-        self.failing = number;
-        return;
-    }
-    if (chosen || self.failing == number) {
-        self.failing = is_manner("ever") ? number : self.failing;
-        self.threads[slot].fails = true;
-        registers->orig_rax = (unsigned long)-1; /* no call at all */
-        ptrace(PTRACE_SETREGS, id, NULL, registers);
+    char file[FILE_SIZE];
+    self.began |= number == SYS_openat && names_the_file(id, registers->rsi);
+    if (self.began && name != NULL) {
+        find_file(id, number, registers->rdi, file);
+        const bool fails = spoil(id, slot, registers);
+        fprintf(self.report, "%s %d %s\n", name, fails, file);
     }
 }
 
@@ -169,7 +183,7 @@ static void leave(pid_t id, int slot, struct user_regs_struct *registers)
         kill(self.child, SIGKILL);
     }
     if (self.threads[slot].fails) {
-        registers->rax = (unsigned long)-self.error;
+        registers->rax = (unsigned long)self.threads[slot].result;
         ptrace(PTRACE_SETREGS, id, NULL, registers);
     }
     self.threads[slot].fails = false;
