@@ -135,8 +135,14 @@ void csv_output_close(csv_output *self)
     }
     const int file = self->file;
     self->file = -1;
-    if (close(file) != 0 || (self->temporary != NULL && rename(self->temporary, self->path) != 0)) {
-        fail(self, errno);
+    /* On the disk before it gets its name: else a power failure could leave an empty file of that name. */
+    int reason = self->temporary != NULL && fsync(file) != 0 ? errno : 0;
+    reason = close(file) != 0 && reason == 0 ? errno : reason;
+    if (reason == 0 && self->temporary != NULL && rename(self->temporary, self->path) != 0) {
+        reason = errno;
+    }
+    if (reason != 0) {
+        fail(self, reason);
     }
     free(self->temporary);
     self->temporary = NULL;
