@@ -5,12 +5,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { FUZZ_COMMAND_TICKS = 20 /* of a scene, at most */ };
+enum { FUZZ_COMMAND_TICKS = 20 /* of a scene, at most */, FUZZ_COMMAND_FILES = 6 };
 
 /* Makes the folder, with the files below in it: once, before all else. */
 void fuzz_command_begin(void);
 
-/* scene.toml, free.toml, csv.toml, input.csv, bus.log, and run.lcm if the build has LCM; NULL behind the last one. */
+/* scene.toml, free.toml, csv.toml, input.csv, bus.log, and run.lcm if the build has LCM. */
 const char *fuzz_command_file(int number);
 
 /* Calls the command in the folder; afterwards it holds the files as they were and no others. */

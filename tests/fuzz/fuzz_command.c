@@ -71,7 +71,6 @@ static void draw_text(fuzz_bytes *input, char *word)
 
 static void draw_word(fuzz_bytes *input, const verb *of, char *word)
 {
-    enum { FILES = 6 };
     switch (fuzz_byte(input) % 8) {
     case 0:
         snprintf(word, LONGEST_WORD, "%s", verbs[fuzz_byte(input) % VERBS]->name);
@@ -86,7 +85,7 @@ static void draw_word(fuzz_bytes *input, const verb *of, char *word)
         return;
     }
     case 4:
-        snprintf(word, LONGEST_WORD, "%s", fuzz_command_file(fuzz_byte(input) % FILES));
+        snprintf(word, LONGEST_WORD, "%s", fuzz_command_file(fuzz_byte(input) % FUZZ_COMMAND_FILES));
         return;
     case 5:
         draw_assignment(input, word);
