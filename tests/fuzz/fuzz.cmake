@@ -51,8 +51,8 @@ file(GLOB fuzz_command_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/mct
 set_source_files_properties(${fuzz_command_sources} PROPERTIES
     COMPILE_OPTIONS "-w;-include;${CMAKE_CURRENT_SOURCE_DIR}/fuzz/command_inside.h")
 set_source_files_properties(${PROJECT_SOURCE_DIR}/tools/mctau/runner.c PROPERTIES
-    COMPILE_DEFINITIONS "runner_try=fuzz_try;runner_drive=fuzz_drive")
-list(APPEND fuzz_command_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/command.c)
+    COMPILE_DEFINITIONS "runner_try=fuzz_try;runner_drive=fuzz_drive;hard_run_case=fuzz_hard_case")
+list(APPEND fuzz_command_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/command.c ${hard_sources})
 string(TOUPPER ${tag} TAG)
 
 # What targets share, with a way to learn what was reached.

@@ -12,8 +12,8 @@
 
 enum { MOST_WORDS = 24, LONGEST_WORD = 256 };
 
-static const verb *const verbs[] = {&verb_run,   &verb_mct,  &verb_list, &verb_replay,
-                                    &verb_drive, &verb_cost, &verb_pick, &verb_advise};
+static const verb *const verbs[] = {&verb_run,  &verb_mct,  &verb_list,   &verb_replay, &verb_drive,
+                                    &verb_cost, &verb_pick, &verb_advise, &verb_hard};
 enum { VERBS = (int)(sizeof verbs / sizeof verbs[0]) };
 
 /* What may stand behind an option, or anywhere. */
