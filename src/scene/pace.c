@@ -8,8 +8,9 @@
  * nowhere; what the others sum up to costs energy. `seed`, of order 1, is there to show it.
  *
  * The places are those that the energy at the start may reach: each angle goes round while the other coordinates stay,
- * a rotation makes half a turn about each axis, and a system that knows the time goes to the scene's end. What is kinetic there goes into each coordinate in turn as fast as it
- * can, v = M^-1 e sqrt(2 T / (e M^-1 e)), into all together, and into the rates of the start.
+ * a rotation makes half a turn about each axis, and a system that knows the time goes to the scene's end. What is kinetic
+ * there goes into each coordinate in turn as fast as it can, v = M^-1 e sqrt(2 T / (e M^-1 e)), into all together, and
+ * into the rates of the start.
  */
 #include "pace.h"
 
