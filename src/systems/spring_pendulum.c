@@ -365,8 +365,12 @@ MCT_INLINE void taylor_in_frame(const frame *now, unsigned effects, int order, c
     const bool has_rest = (effects & MCT_SPRING) && k->rest_rate > 0;
     const bool is_turned = (effects & MCT_VISCOUS) || u != 0;
     const bool has_inverse = has_rest || is_turned;
-    /* 1/R is singular at a complex time R/|Xd| from here: a step that comes half as far is rk4's. */
-    if (has_inverse && 4 * h * h * (y[2] * y[2] + y[3] * y[3]) * by_square > 1) {
+    /*
+     * 1/R is singular at a complex time R/|Xd| from here: a step that comes half as far is rk4's, with a rest length, where
+     * that is made in parts, one of a low order sooner.
+     */
+    const mct_real reach = !has_rest || order > 8 ? MCT_R(4) : order > 4 ? MCT_R(16) : MCT_R(64);
+    if (has_inverse && reach * h * h * (y[2] * y[2] + y[3] * y[3]) * by_square > 1) {
         rk4_in_frame(now, effects, y, u, dy);
         return;
     }

@@ -181,7 +181,7 @@ static void print_rules(const matrix *self)
         printf("%9s ", criterion > 0 ? cell : "any");
         figure_of(one->results[HARD_NAIVE].error, cell);
         printf("%8s  ", cell);
-        print_wrapped(one->about->rule, strlen(one->about->rule), 33, 32);
+        print_wrapped(one->about->rule, strlen(one->about->rule), 34, 33);
     }
 }
 
