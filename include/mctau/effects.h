@@ -33,7 +33,9 @@ enum {
     MCT_COULOMB_EXACT = 1 << 16,     /**< dry friction, starts and stops located within the step */
     MCT_SATURATION_CURRENT = 1 << 17 /**< the drive bounds the current */
 };
-#define MCT_CLOCK          (MCT_BASE_MOTION | MCT_FORCING) /**< what depends on time: the phases are states */
+#define MCT_CLOCK (MCT_BASE_MOTION | MCT_FORCING) /**< what depends on time: the phases are states */
+/** What does work that is in no energy and is no input. */
+#define MCT_SOURCES        (MCT_CLOCK | MCT_FORCES | MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE)
 #define MCT_MOTOR          (MCT_MOTOR_QUASI_STATIC | MCT_MOTOR_INDUCTIVE)
 #define MCT_COULOMB        (MCT_COULOMB_MOREAU | MCT_COULOMB_EXACT)
 #define MCT_SATURATION     (MCT_SATURATION_VOLTAGE | MCT_SATURATION_CURRENT)

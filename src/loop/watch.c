@@ -4,9 +4,6 @@
 
 #include "mctau/matrix.h"
 
-/* What does work that is not followed here. */
-#define OTHER_SOURCES (MCT_CLOCK | MCT_FORCES | MCT_CENTRIFUGAL | MCT_CORIOLIS | MCT_EULER_FORCE)
-
 /* Of what is in motion: more than this cannot have come from errors of steps that follow the motion. */
 #define IMPOSSIBLE 0.5
 
@@ -25,7 +22,7 @@ static bool has_belt(const mct_plant *plant, const mct_scene *scene)
 /* Whether all that does work is the input, forces with a potential, and friction against what rests. */
 static bool has_one_source(const mct_plant *plant, const mct_scene *scene)
 {
-    if ((plant->effects & OTHER_SOURCES) || plant->system->is_timed || plant->system->is_process) {
+    if ((plant->effects & MCT_SOURCES) || plant->system->is_timed || plant->system->is_process) {
         return false;
     }
     if (plant->effects & MCT_MOTOR_INDUCTIVE) {

@@ -285,7 +285,7 @@ void mct_pace_find(const mct_scene *scene, mct_pace *pace)
     if (self.input > 0 || (self.effects & MCT_CLOCK)) { /* it may be driven to the top */
         self.energy = mct_max(self.energy, highest_potential(&self));
     }
-    self.may_feed = scene->stepper == MCT_STEPPER_TAYLOR6 && self.input == 0 && !(self.effects & MCT_CLOCK);
+    self.may_feed = scene->stepper == MCT_STEPPER_TAYLOR6 && self.input == 0 && !(self.effects & MCT_SOURCES);
     double first = 0;
     for (int halvings = 0; halvings < HALVINGS; halvings++) {
         mct_pace at = *pace;

@@ -211,6 +211,44 @@ static void print_kernels(const char *what, int system, int stepper, const char 
     }
 }
 
+/* A system without a motor, from its defaults: under weight, what a scene gets, and all effects with either kind of friction. */
+static void print_motion(int system, int stepper)
+{
+    const mct_system *model = mct_systems[system];
+    const uint32_t sets[] = {model->effects & MCT_GRAVITY, model->standard_effects,
+                             model->effects & ~(uint32_t)MCT_COULOMB_EXACT,
+                             model->effects & ~(uint32_t)MCT_COULOMB_MOREAU};
+    const double amplitude = model->input_without_motor != NULL ? 1e-3 : 0;
+    uint64_t hash = 0;
+    int suited = 0;
+    for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
+        mct_scene scene;
+        mct_plant plant;
+        mct_scene_defaults(&scene, system);
+        scene.stepper = stepper;
+        scene.effects = sets[i];
+        for (int k = 0; k < model->parameter_count;
+             k++) { /* those of effects that a scene does not get are 0 */
+            scene.parameters[k] += scene.parameters[k] == 0 && model->parameters[k].effects != 0 ? 0.01 : 0;
+        }
+        if (mct_plant_init(&plant, &scene, NULL) != MCT_OK) {
+            continue;
+        }
+        suited++;
+        for (int tick = 0; tick < TICKS; tick++) {
+            mct_plant_step(&plant, (mct_real)(amplitude * input_at(tick)));
+            hash = with_state(hash, plant.system, &plant.state);
+        }
+        if (plant.diverged_ticks != 0) {
+            fail(model->name, "diverged, so its hash would say little");
+        }
+    }
+    if (suited > 0) {
+        printf("%s motion %s %s %016llx\n", precision, model->name, mct_steppers[stepper].name,
+               (unsigned long long)hash);
+    }
+}
+
 static void print_evaluations(int system, const char *motor, uint32_t motor_effect)
 {
     uint64_t hash = 0;
@@ -297,6 +335,12 @@ int main(int argc, char **argv)
                 }
             }
             print_evaluations(system, motors[m].name, motors[m].effect);
+        }
+    }
+    for (int system = 0; system < MCT_SYSTEM_COUNT; system++) {
+        for (int stepper = 0; mct_systems[system]->actuation == NULL && stepper < MCT_STEPPER_COUNT;
+             stepper++) {
+            print_motion(system, stepper);
         }
     }
     for (int i = 1; i < argc; i++) {
