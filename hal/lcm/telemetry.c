@@ -479,7 +479,7 @@ static mct_status open_log(mct_telemetry *self, const char *path, mct_message *w
         explain(why, "cannot write the log ", path, errno);
         return MCT_ERROR_IO;
     }
-    setvbuf(file->f, self->log.buffer, _IOFBF, sizeof self->log.buffer);
+    (void)setvbuf(file->f, self->log.buffer, _IOFBF, sizeof self->log.buffer);
     self->log.file = file;
     self->log.wanted = true;
     write_log(self, MCT_CHANNEL_SCENE, 0, self->scene_message, self->scene_length);
