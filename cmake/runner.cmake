@@ -13,6 +13,7 @@ set(runner_sources ${command_sources})
 list(FILTER runner_sources INCLUDE REGEX "/runner[^/]*\\.c$")
 list(FILTER command_sources EXCLUDE REGEX "/runner[^/]*\\.c$")
 file(GLOB hard_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/hard/*.c) # belong to a precision as well
+set_source_files_properties(${hard_sources} PROPERTIES COMPILE_OPTIONS -Wno-double-promotion) # references in long double
 if(NOT command_sources)
     mctau_missing("tools/mctau holds no C file, so the command is left out")
     return()

@@ -38,7 +38,7 @@ static uint32_t microseconds(int64_t ns)
     return us < 0 ? 0 : us > UINT32_MAX ? UINT32_MAX : (uint32_t)us;
 }
 
-void mct_clock_wait(mct_clock *clock)
+mct_status mct_clock_wait(mct_clock *clock)
 {
     mct_timing *timing = &clock->timing;
     const int64_t done = now_ns();
@@ -58,4 +58,5 @@ void mct_clock_wait(mct_clock *clock)
     clock->woke_ns = now_ns();
     mct_histogram_add(&timing->lateness, microseconds(clock->woke_ns - due_ns));
     clock->tick++;
+    return status == 0 ? MCT_OK : MCT_ERROR_IO;
 }

@@ -29,7 +29,8 @@ void mct_clock_start(mct_clock *clock, double period);
 /**
  * Sleeps until the next deadline. Deadlines that have passed already are skipped and counted, never caught
  * up.
+ * @return MCT_OK; MCT_ERROR_IO when the system cannot sleep: the tick then begins too early
  */
-void mct_clock_wait(mct_clock *clock);
+mct_status mct_clock_wait(mct_clock *clock);
 
 #endif

@@ -6,11 +6,10 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <lcm/lcm.h>
 #include <sched.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdio_ext.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -28,11 +27,14 @@ enum {
                 16 * MCT_MAX_STATES, /* of a tick_t, at most */
     HEALTH_SIZE =
         256 + 8 * (4 * (MCT_HISTOGRAM_BINS + 1) + MCT_FAULT_COUNT + MCT_MODE_COUNT + MCT_MAX_COUNTERS),
+    NO_FILE = -1,
+    MOST_WRITES = 1000,     /* of one buffer */
     EVENT_HEADER = 28,      /* bytes of a log's event before its channel */
     HEALTHS_PER_SCENE = 10, /* the scene is repeated every second */
     STACK_SIZE = 256 * 1024,
     NAP_NS = 200000 /* while the ring is empty */
 };
+#define SYNC_WORD 0xEDA1DA01             /* that an event begins with */
 static const double health_period = 0.1; /* [s] */
 
 static int64_t microseconds(const mct_telemetry *self, uint64_t tick)
@@ -42,33 +44,46 @@ static int64_t microseconds(const mct_telemetry *self, uint64_t tick)
 
 /* --- the log --- */
 
-/* The log has refused something. What is in the buffer may be on the disk in part: it is taken back to the
- * last event that is whole, and the log is closed. */
+/* The log has refused something, which may be on the disk in part: it is taken back to the last event that is
+ * whole, and the log is closed. */
 static void fail_log(mct_telemetry *self, int reason)
 {
     mct_telemetry_log *log = &self->log;
-    lcm_eventlog_t *file = log->file;
     self->counts.log_errors += log->waiting_events;
-    if (self->counts.first_log_errno == 0) {
-        self->counts.first_log_errno = reason != 0 ? reason : EIO;
-    }
-    __fpurge(file->f); /* or closing would write the rest after all */
-    if (ftruncate(fileno(file->f), (off_t)log->kept_bytes) != 0) {
+    self->counts.first_log_errno = reason;
+    if (ftruncate(log->file, (off_t)log->kept_bytes) != 0) {
         /* a device or a pipe: nothing to take back */
     }
-    lcm_eventlog_destroy(file);
-    log->file = NULL;
+    close(log->file);
+    log->file = NO_FILE;
+}
+
+/* @return 0, or why not all of it was written */
+static int write_all(int file, const uint8_t *bytes, size_t length)
+{
+    int reason = EIO; /* nothing is written, and nobody says why */
+    for (int tries = 0; length > 0 && tries < MOST_WRITES; tries++) {
+        const ssize_t written = write(file, bytes, length);
+        if (written > 0) {
+            bytes += written;
+            length -= (size_t)written;
+        } else if (written < 0) {
+            reason = errno;
+            tries = reason == EINTR ? tries : MOST_WRITES;
+        }
+    }
+    return length > 0 ? reason : 0;
 }
 
 static void flush_log(mct_telemetry *self)
 {
     mct_telemetry_log *log = &self->log;
-    if (log->file == NULL) {
+    if (log->file == NO_FILE) {
         return;
     }
-    errno = 0;
-    if (fflush(((lcm_eventlog_t *)log->file)->f) != 0) {
-        fail_log(self, errno);
+    const int reason = write_all(log->file, log->buffer, log->waiting_bytes);
+    if (reason != 0) {
+        fail_log(self, reason);
         return;
     }
     self->counts.logged += log->waiting_records;
@@ -78,43 +93,68 @@ static void flush_log(mct_telemetry *self)
     log->waiting_records = 0;
 }
 
-/* The buffer is flushed here before it overflows, never by stdio: so it is known which events are whole on
- * the disk. */
-static void write_log(mct_telemetry *self, const char *channel, int64_t utime, uint8_t *data, int length)
+static uint8_t *put_big_endian(uint8_t *at, uint64_t value, int bytes)
+{
+    for (int i = bytes - 1; i >= 0; i--) {
+        *at++ = (uint8_t)(value >> 8 * i);
+    }
+    return at;
+}
+
+static uint8_t *put_bytes(uint8_t *at, const void *bytes, size_t length)
+{
+    memcpy(at, bytes, length);
+    return at + length;
+}
+
+/* Written by hand and not by LCM, which buffers by stdio: so each write ends with an event, it is known which of
+ * them the disk has, and nothing is allocated. */
+static void write_log(mct_telemetry *self, const char *channel, int64_t utime, const uint8_t *data,
+                      int length)
 {
     mct_telemetry_log *log = &self->log;
-    lcm_eventlog_event_t event = {.timestamp = utime,
-                                  .channellen = (int32_t)strlen(channel),
-                                  .datalen = length,
-                                  .channel = (char *)channel,
-                                  .data = data};
-    const uint64_t bytes = EVENT_HEADER + (uint64_t)event.channellen + (uint64_t)length;
+    const size_t channel_length = strlen(channel);
+    const size_t bytes = EVENT_HEADER + channel_length + (size_t)length;
     if (!log->wanted) {
         return;
     }
     if (log->waiting_bytes + bytes > sizeof log->buffer) {
         flush_log(self);
     }
-    if (log->file == NULL) {
+    if (log->file == NO_FILE) {
         self->counts.log_errors++;
         return;
     }
+    uint8_t *at = log->buffer + log->waiting_bytes;
+    at = put_big_endian(at, SYNC_WORD, 4);
+    at = put_big_endian(at, log->events++, 8);
+    at = put_big_endian(at, (uint64_t)utime, 8);
+    at = put_big_endian(at, channel_length, 4);
+    at = put_big_endian(at, (uint64_t)length, 4);
+    at = put_bytes(at, channel, channel_length);
+    put_bytes(at, data, (size_t)length);
     log->waiting_bytes += bytes;
     log->waiting_events++;
     log->waiting_records += strcmp(channel, MCT_CHANNEL_TICK) == 0;
-    errno = 0;
-    if (lcm_eventlog_write_event(log->file, &event) != 0) {
-        fail_log(self, errno);
-    }
+}
+
+/* On the disk, as far as there is one: an error of writing may show as late as now. */
+static bool is_synced(int file)
+{
+    return fsync(file) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
 }
 
 static void close_log(mct_telemetry *self)
 {
+    mct_telemetry_log *log = &self->log;
     flush_log(self);
-    if (self->log.file != NULL) {
-        lcm_eventlog_destroy(self->log.file);
-        self->log.file = NULL;
+    if (log->file == NO_FILE) {
+        return;
     }
+    const int sync_error = is_synced(log->file) ? 0 : errno;
+    const int close_error = close(log->file) == 0 ? 0 : errno;
+    log->file = NO_FILE;
+    self->counts.first_log_errno = sync_error != 0 ? sync_error : close_error;
 }
 
 /* --- messages --- */
@@ -338,7 +378,7 @@ static mct_status encode_scene(mct_telemetry *self, const char *text)
 {
     const mct_scene *scene = self->scene;
     const mct_system *system = mct_systems[scene->system];
-    char *copy = self->log.buffer;
+    char *copy = (char *)self->log.buffer;
     char *overrides[MCT_MAX_OVERRIDES];
     char *names[MCT_MAX_STATES];
     char *units[MCT_MAX_STATES];
@@ -472,15 +512,12 @@ static mct_status open_lcm(mct_telemetry *self, const char *url, mct_message *wh
 
 static mct_status open_log(mct_telemetry *self, const char *path, mct_message *why)
 {
-    errno = 0;
-    lcm_eventlog_t *file = lcm_eventlog_create(path, "w");
-    if (file == NULL) {
+    self->log.file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (self->log.file == NO_FILE) {
         mct_message_clear(why);
         explain(why, "cannot write the log ", path, errno);
         return MCT_ERROR_IO;
     }
-    (void)setvbuf(file->f, self->log.buffer, _IOFBF, sizeof self->log.buffer);
-    self->log.file = file;
     self->log.wanted = true;
     write_log(self, MCT_CHANNEL_SCENE, 0, self->scene_message, self->scene_length);
     flush_log(self);
@@ -506,6 +543,7 @@ mct_status mct_telemetry_start(mct_telemetry *telemetry, mct_ring *ring, const m
     memset(telemetry, 0, sizeof *telemetry);
     mct_message_clear(why);
     telemetry->ring = ring;
+    telemetry->log.file = NO_FILE;
     telemetry->scene = scene;
     telemetry->timing = targets->timing;
     telemetry->counters = targets->counters;

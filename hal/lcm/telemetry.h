@@ -33,7 +33,7 @@
 #define MCT_MAX_OVERRIDES        64
 
 #define MCT_TELEMETRY_SCENE_SIZE 65536 /**< longest scene message [bytes]: the text and some 1 kB */
-#define MCT_TELEMETRY_LOG_SIZE   65536 /**< buffer of the log [bytes]: 0.2 s at 1 kHz */
+#define MCT_TELEMETRY_LOG_SIZE   65792 /**< buffer of the log [bytes]: a scene message, or 0.2 s at 1 kHz */
 
 typedef struct {
     const char *url; /**< LCM URL (udpm://...), or NULL or "" for none */
@@ -56,13 +56,14 @@ typedef struct {
 
 /** The event log. It ends at its first error, cut back to the last whole event, fit for a replay. */
 typedef struct {
-    void *file; /**< lcm_eventlog_t; NULL when there is none, or after an error */
+    int file; /**< descriptor; -1 when there is none, or after an error */
     bool wanted;
+    uint64_t events;          /**< so far */
     uint64_t kept_bytes;      /**< written so far, up to a whole event */
     uint64_t waiting_bytes;   /**< in the buffer */
     uint64_t waiting_events;  /**< in the buffer */
     uint64_t waiting_records; /**< of them */
-    char buffer[MCT_TELEMETRY_LOG_SIZE];
+    uint8_t buffer[MCT_TELEMETRY_LOG_SIZE];
 } mct_telemetry_log;
 
 /** What health_t tells. */

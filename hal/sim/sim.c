@@ -128,10 +128,7 @@ static mct_status sim_wait_tick(void *context)
 {
     mct_sim *sim = context;
     mct_plant_step(&sim->plant, sim->input);
-    if (sim->realtime) {
-        mct_clock_wait(&sim->clock);
-    }
-    return MCT_OK;
+    return sim->realtime ? mct_clock_wait(&sim->clock) : MCT_OK;
 }
 
 static void sim_arm(void *context)

@@ -259,8 +259,9 @@ static mct_status can_wait_tick(void *context)
 {
     mct_can *self = context;
     const mct_can_transport *transport = &self->transport;
+    mct_status status = MCT_OK;
     if (!self->lockstep) {
-        mct_clock_wait(&self->clock);
+        status = mct_clock_wait(&self->clock);
     } else {
         int64_t left_us = transport->ops->simulated ? (int64_t)self->tick_us : PATIENCE_US;
         const int64_t end_us = transport->ops->now_us(transport->context) + left_us;
@@ -271,7 +272,7 @@ static mct_status can_wait_tick(void *context)
         }
     }
     self->tick++;
-    return MCT_OK;
+    return status;
 }
 
 static void can_stop(void *context)

@@ -24,6 +24,9 @@ typedef struct {
     mct_real angle_damping;  /**< k2 / m [m^2/s] */
     mct_real near_friction;  /**< (nearest length that a step resolves)^2: the part of k2 [m^2] */
     mct_real near_torque;    /**< and that of a torque [m^2/(N m)] */
+    /** What a step of spring and friction along the rod alone adds to (r - l0, rd), from these and a constant pull. */
+    mct_real along[2][3];
+    mct_real resting_inverse_cube; /**< 1 / l0^3 [1/m^3]; 0 without a rest length */
 } mct_spring_pendulum_constants;
 
 #endif

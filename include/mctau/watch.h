@@ -32,7 +32,7 @@ typedef struct {
 void mct_watch_start(mct_watch *watch, const mct_plant *plant, const mct_scene *scene);
 
 /**
- * To be called after every mct_plant_step(). Costs some 5 to 10 ns, and two evaluations (8 kB of stack in double, half of it in
+ * To be called after every mct_plant_step(). Costs some 15 ns, and two evaluations (8 kB of stack in double, half of it in
  * float) every MCT_WATCH_TICKS ticks. Not thread-safe per watch.
  * @return false at a look that found energy from nowhere; also counted
  */

@@ -4,12 +4,13 @@
  * as for that of friction, motor and drag.
  *
  * Under a polynomial of order p an oscillation, exp(i z), becomes larger or smaller, by turns of two orders: it shrinks
- * with 3, 4, 7, 8, 11 and 12 and grows with 1, 2, 5 and 6. So `taylor6` has to keep the sum of its errors small; what the
- * others sum up to costs energy. `seed`, of order 1, is there to show it.
+ * with 3, 4, 7, 8, 11 and 12 and grows with 1, 2, 5 and 6. So `taylor6` is asked, too, what energy a step brings from
+ * nowhere; what the others sum up to costs energy. `seed`, of order 1, is there to show it.
  *
  * The places are those that the energy at the start may reach: each angle goes round while the other coordinates stay,
- * a rotation makes half a turn about each axis, and a system that knows the time goes to the scene's end. What is kinetic there goes into each coordinate in turn as fast as it
- * can, v = M^-1 e sqrt(2 T / (e M^-1 e)), into all together, and into the rates of the start.
+ * a rotation makes half a turn about each axis, and a system that knows the time goes to the scene's end. What is kinetic
+ * there goes into each coordinate in turn as fast as it can, v = M^-1 e sqrt(2 T / (e M^-1 e)), into all together, and
+ * into the rates of the start.
  */
 #include "pace.h"
 
@@ -43,6 +44,8 @@ typedef struct {
     int coordinates, rate, states;
     mct_real input;             /* the largest */
     double energy;              /* at the start [J] */
+    bool may_feed;              /* energy that a step brings comes from nowhere, and may add up */
+    double gain;                /* largest so far, over what is kinetic */
     double step;                /* [s] */
     mct_constants constants[2]; /* of the step and of its half */
 } trial;
@@ -119,6 +122,19 @@ static double square_of(const trial *self, const double *M, const double *v)
     return sum;
 }
 
+/* By a step; 0 within rounding. */
+static double energy_gained(const trial *self, const mct_state *start, const mct_state *end)
+{
+    mct_evaluation a, b;
+    self->system->evaluate(&self->constants[0], self->effects, start->x, 0, &a);
+    self->system->evaluate(&self->constants[0], self->effects, end->x, 0, &b);
+    const double potential = (double)b.potential_energy - (double)a.potential_energy;
+    const double gained = potential + ((double)b.kinetic_energy - (double)a.kinetic_energy) +
+                          ((double)b.magnetic_energy - (double)a.magnetic_energy);
+    const double size = (double)a.kinetic_energy + mct_abs((double)a.potential_energy);
+    return gained > 64 * (double)MCT_REAL_EPSILON * size ? gained : 0;
+}
+
 /* What halving a step from a state changes of rates and attitude; of the rates, over what they have or get. */
 static double halving(trial *self, const mct_state *start, const double *M, double square)
 {
@@ -137,6 +153,9 @@ static double halving(trial *self, const mct_state *start, const double *M, doub
             const double difference = (double)whole.x[j] - (double)halves.x[j];
             turned += difference * difference;
         }
+    }
+    if (self->may_feed) {
+        self->gain = mct_max(self->gain, energy_gained(self, start, &whole) / (0.5 * square));
     }
     const double scale = mct_max(square, square_of(self, M, gain));
     const double error = mct_sqrt(square_of(self, M, v) / scale);
@@ -266,25 +285,24 @@ void mct_pace_find(const mct_scene *scene, mct_pace *pace)
     if (self.input > 0 || (self.effects & MCT_CLOCK)) { /* it may be driven to the top */
         self.energy = mct_max(self.energy, highest_potential(&self));
     }
-    double first = 0, allowed = FOLLOWED;
+    self.may_feed = scene->stepper == MCT_STEPPER_TAYLOR6 && self.input == 0 && !(self.effects & MCT_CLOCK);
+    double first = 0;
     for (int halvings = 0; halvings < HALVINGS; halvings++) {
         mct_pace at = *pace;
         const bool is_fit = self.system->prepare(scene, self.step / 2, &self.constants[1], NULL) == MCT_OK;
+        self.gain = 0;
         const double error = is_fit ? worst_error(&self, &at) : DBL_MAX;
+        const bool feeds = self.gain * scene->duration > FEEDS * self.step;
         if (halvings == 0) {
             *pace = at;
             pace->error = first = error;
-            pace->verdict = error <= FOLLOWED       ? MCT_PACE_FOLLOWS
-                            : error <= NOT_FOLLOWED ? MCT_PACE_LONG
-                                                    : MCT_PACE_NOT_FOLLOWED;
-            if (scene->stepper == MCT_STEPPER_TAYLOR6 && error * scene->duration > FEEDS * self.step) {
-                pace->verdict = MCT_PACE_NOT_FOLLOWED;
-                allowed = FEEDS * self.step / scene->duration;
-            }
-        } else if (halvings == 1 && !(error <= CONVERGES * first)) {
+            pace->verdict = feeds || error > NOT_FOLLOWED ? MCT_PACE_NOT_FOLLOWED
+                            : error > FOLLOWED            ? MCT_PACE_LONG
+                                                          : MCT_PACE_FOLLOWS;
+        } else if (halvings == 1 && error > CONVERGES * first) {
             pace->verdict = MCT_PACE_NOT_FOLLOWED;
         }
-        if (error > allowed) {
+        if (feeds || error > FOLLOWED) {
             pace->longest = 0;
         } else if (halvings == 0 || pace->longest > 0) {
             return;

@@ -32,8 +32,10 @@ const mct_stepper mct_steppers[MCT_STEPPER_COUNT] = {
     [MCT_STEPPER_RKN6] = {"rkn6", 6,
                           "Runge-Kutta-Nystroem, order 6: for forces of position alone, without friction", 0,
                           true, true},
-    [MCT_STEPPER_SPLIT3] = {"split3", 2, "rotations about three axes in turn: keeps momentum at any spin", 0,
-                            false, true},
+    [MCT_STEPPER_SPLIT3] = {"split3", 2,
+                            "parts in turn, each moved exactly: rotations about three axes, at any spin; "
+                            "along a spring and about its pivot, at any stiffness",
+                            0, false, true},
     [MCT_STEPPER_DISCRETE] = {"discrete", 1,
                               "the steps of a process that has no time of its own: inverse kinematics", 0,
                               false, false},

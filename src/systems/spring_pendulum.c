@@ -17,7 +17,8 @@
  *                   xdd = g' - k/m (1 - l0/R) X - k1/m (X.xd) X / R^2 + (torque - k2 w) / (m R^2) (-X2, X1),
  *               and its increments are turned into polar ones without a difference of large numbers. A ball that
  *               passes the pivot comes out on the other side: r stays positive, th jumps by half a turn.
- * Validity      m, k > 0; steps short against sqrt(m/k) and m/k1: else refused. With k2 or a torque the equation has no
+ *               `split3` takes the motion along the rod exactly, between halves of all else, in polar coordinates.
+ * Validity      m, k > 0; steps short against sqrt(m/k) and m/k1, but with `split3`: else refused. With k2 or a torque the equation has no
  *               limit at r = 0: starting where a step does not resolve it is refused, a step that leads there fails
  *               (mct_plant.diverged_ticks). With l0 > 0 the spring's force jumps at r = 0: `rk4` and the series pass
  *               it in parts of a step (rk4_in_frame); a step of `euler` or `leap` across it is of first order.
@@ -100,13 +101,17 @@ static mct_status check(const struct mct_scene *scene, double h, struct mct_mess
     const double stiffest = m * (LONGEST_PHASE / h) * (LONGEST_PHASE / h);
     const double densest = m * LONGEST_DAMPING / h;
     const double roughest = FASTEST_FRICTION * m * r * r / h;
-    if ((scene->effects & MCT_SPRING) && p[STIFFNESS] > stiffest) {
-        return refuse(why, "parameters.stiffness", p[STIFFNESS], " N/m",
-                      ", an oscillation too fast for a step of this length; allowed up to ", stiffest);
+    const bool is_exact = scene->stepper == MCT_STEPPER_SPLIT3; /* along the rod */
+    if ((scene->effects & MCT_SPRING) && p[STIFFNESS] > stiffest && !is_exact) {
+        return refuse(
+            why, "parameters.stiffness", p[STIFFNESS], " N/m",
+            ", an oscillation too fast for a step of this length; allowed any with split3, else up to ",
+            stiffest);
     }
-    if (viscous && p[LENGTH_FRICTION] > densest) {
+    if (viscous && p[LENGTH_FRICTION] > densest && !is_exact) {
         return refuse(why, "parameters.length_friction", p[LENGTH_FRICTION], " N s/m",
-                      ", a decay too fast for a step of this length; allowed up to ", densest);
+                      ", a decay too fast for a step of this length; allowed any with split3, else up to ",
+                      densest);
     }
     if (!(r > 0)) {
         return refuse(why, "initial.length", r, " m", ", where the angle says nothing; allowed above ", 0);
@@ -142,6 +147,19 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     k->angle_damping = (mct_real)(angle_viscous / m);
     k->near_friction = (mct_real)(h * angle_viscous / (FASTEST_FRICTION * m));
     k->near_torque = (mct_real)(h * h / (FASTEST_TORQUE * m));
+    const double rest = scene->effects & MCT_SPRING ? p[REST_LENGTH] : 0;
+    k->resting_inverse_cube = (mct_real)(rest > 0 ? 1 / (rest * rest * rest) : 0);
+    /* d/dt (r - l0, rd, a constant pull) */
+    const double generator[9] = {0, h, 0, -h * stiffness / m, -h * length_viscous / m, h, 0, 0, 0};
+    double flow[9];
+    const mct_status status = mct_expm1(3, generator, flow);
+    if (status != MCT_OK) {
+        mct_message_add(why, "parameters.stiffness: found a spring too stiff, or too rough, for any step");
+        return status;
+    }
+    for (int i = 0; i < 6; i++) {
+        k->along[i / 3][i % 3] = (mct_real)flow[i];
+    }
     return check(scene, h, why);
 }
 
@@ -347,8 +365,12 @@ MCT_INLINE void taylor_in_frame(const frame *now, unsigned effects, int order, c
     const bool has_rest = (effects & MCT_SPRING) && k->rest_rate > 0;
     const bool is_turned = (effects & MCT_VISCOUS) || u != 0;
     const bool has_inverse = has_rest || is_turned;
-    /* 1/R is singular at a complex time R/|Xd| from here: a step that comes half as far is rk4's. */
-    if (has_inverse && 4 * h * h * (y[2] * y[2] + y[3] * y[3]) * by_square > 1) {
+    /*
+     * 1/R is singular at a complex time R/|Xd| from here: a step that comes half as far is rk4's, with a rest length, where
+     * that is made in parts, one of a low order sooner.
+     */
+    const mct_real reach = !has_rest || order > 8 ? MCT_R(4) : order > 4 ? MCT_R(16) : MCT_R(64);
+    if (has_inverse && reach * h * h * (y[2] * y[2] + y[3] * y[3]) * by_square > 1) {
         rk4_in_frame(now, effects, y, u, dy);
         return;
     }
@@ -688,6 +710,91 @@ MCT_INLINE void taylor_step(const constants_t *k, unsigned effects, int order, c
     }
 }
 
+/* ---- the spring by itself, however stiff ---- */
+
+typedef struct {
+    mct_real r, rd;
+    mct_real momentum; /* r^2 w, by mass */
+    mct_real s, c;     /* of the angle */
+} split_state;
+
+/*
+ * What pulls along the rod, by mass: weight, and the turning's pull as it is at the rest length. Neither changes while the
+ * ball moves along the rod, so that it swings about where they hold it.
+ */
+MCT_INLINE mct_real held_pull(const constants_t *k, unsigned effects, const split_state *now)
+{
+    const mct_real turning = now->momentum * now->momentum * k->resting_inverse_cube;
+    return (effects & MCT_GRAVITY) ? turning - k->gravity * now->s : turning;
+}
+
+/* Torque and weight across the rod for half a step. */
+MCT_INLINE void split_push(const constants_t *k, unsigned effects, mct_real u, split_state *now)
+{
+    mct_real torque = k->inverse_mass * u;
+    if (effects & MCT_GRAVITY) {
+        torque -= k->gravity * now->r * now->c;
+    }
+    now->momentum += k->step.half * torque;
+}
+
+/* Friction of the pivot for half a step, the mean of both ends. */
+MCT_INLINE void split_slow(const constants_t *k, unsigned effects, split_state *now)
+{
+    if (effects & MCT_VISCOUS) {
+        const mct_real share = MCT_R(0.5) * k->step.half * k->angle_damping / (now->r * now->r);
+        now->momentum *= (1 - share) / (1 + share);
+    }
+}
+
+/* Pull of the turning for half a step, beyond that at the rest length. */
+MCT_INLINE void split_pull(const constants_t *k, split_state *now)
+{
+    const mct_real inverse_cube = 1 / (now->r * now->r * now->r);
+    now->rd += k->step.half * (now->momentum * now->momentum * (inverse_cube - k->resting_inverse_cube));
+}
+
+/*
+ * The motion along the rod under spring, friction and a constant pull is linear and taken exactly, between two halves of all
+ * else: torque and weight across the rod, friction of the pivot, turning. Each part by itself keeps what it should, and the
+ * order is the same from both ends: of order 2, symmetric in time, at any stiffness.
+ */
+MCT_INLINE void split3(const constants_t *k, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
+{
+    split_state now = {x[0], x[2], x[0] * x[0] * x[3], 0, 0};
+    mct_real s = 0, c = 0;
+    if (effects & MCT_GRAVITY) {
+        mct_sincos(x[1], &s, &c);
+        now.s = s;
+        now.c = c;
+    }
+    split_push(k, effects, u, &now);
+    split_slow(k, effects, &now);
+    const mct_real before = k->step.half * now.momentum / (now.r * now.r);
+    if (effects & MCT_GRAVITY) {
+        mct_sincos_near(x[1] + before, before, s, c, &now.s, &now.c);
+    }
+    split_pull(k, &now);
+    const mct_real pull = held_pull(k, effects, &now);
+    const mct_real stretch = now.r - k->rest_length;
+    dx[0] = k->along[0][0] * stretch + k->along[0][1] * now.rd + k->along[0][2] * pull;
+    now.rd += k->along[1][0] * stretch + k->along[1][1] * now.rd + k->along[1][2] * pull;
+    now.r = x[0] + dx[0];
+    if (!(now.r > 0)) {
+        fail(dx);
+        return;
+    }
+    split_pull(k, &now);
+    dx[1] = before + k->step.half * now.momentum / (now.r * now.r);
+    if (effects & MCT_GRAVITY) {
+        mct_sincos_near(x[1] + dx[1], dx[1], s, c, &now.s, &now.c);
+    }
+    split_slow(k, effects, &now);
+    split_push(k, effects, u, &now);
+    dx[2] = now.rd - x[2];
+    dx[3] = now.momentum / (now.r * now.r) - x[3];
+}
+
 static void evaluate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
                      mct_evaluation *out)
 {
@@ -753,15 +860,14 @@ MCT_KERNELS_3(taylor4, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 4
 MCT_KERNELS_3(taylor6, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 6, x, u, dx))
 MCT_KERNELS_3(taylor8, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 8, x, u, dx))
 MCT_KERNELS_3(taylor12, k->step.remainder, 2, SWITCHES, framed_taylor(k, effects, 12, x, u, dx))
+MCT_KERNELS_3(split3, k->step.remainder, 2, SWITCHES, split3(k, effects, x, u, dx))
 
 static mct_kernel kernel(int stepper, uint32_t effects)
 {
     static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels,
-        [MCT_STEPPER_EULER] = euler_kernels,
-        [MCT_STEPPER_LEAP] = leap_kernels,
-        [MCT_STEPPER_RK4] = rk4_kernels,
-        MCT_TAYLOR_ROWS,
+        [MCT_STEPPER_SEED] = seed_kernels,     [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels,     [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_SPLIT3] = split3_kernels, MCT_TAYLOR_ROWS,
     };
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }

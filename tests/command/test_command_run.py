@@ -111,12 +111,30 @@ def test_free_motion_is_finished_and_exits_with_0(result, scenes):
     assert found["mode"] == "open_loop"
 
 
-def test_a_simulation_that_blows_up_is_diverged_and_exits_with_1(result, scenes):
-    found = result("run", scenes / "cart_pole_free.toml", "--dt", "0.1", "--stepper", "seed",
-                   "--set", "initial.pole_rate=1e5", exit_code=1)  # fmt: skip
+def test_a_simulation_that_leaves_all_bounds_is_diverged_and_exits_with_1(result, tmp_path):
+    scene = tmp_path / "pushed.toml"
+    scene.write_text('scene.system = "linked_particles"\n[input]\nkind = "constant"\nvalue = 1e9\n')
+    found = result("run", scene, exit_code=1)
     assert found["verdict"] == "diverged"
     assert found["counters"]["diverged_ticks"] > 0
     assert all(math.isfinite(value) for value in found["state"].values())
+
+
+def test_steps_that_do_not_follow_the_motion_are_refused_with_those_that_do(mctau, scenes):
+    done = mctau("run", scenes / "cart_pole_free.toml", "--set", "initial.pole_rate=1e5")
+    assert done.returncode == 2
+    assert "scene.dt: found steps of 0.001 s by rk4, which do not follow the motion" in done.stderr
+    assert "allowed steps up to" in done.stderr
+
+
+def test_a_simulation_that_gains_energy_from_nowhere_is_faulted_and_replays(result, mctau, tmp_path):
+    scene = tmp_path / "anti_damped.toml"
+    scene.write_text('scene.system = "pendulum"\nscene.stepper = "seed"\n[parameters]\nlength = 0.02\n'
+                     "[effects]\nviscous = false\n[initial]\nangle = 2.6\n")  # fmt: skip
+    found = result("run", scene, "--log", tmp_path / "log", exit_code=1)
+    assert found["verdict"] == "faulted"
+    assert found["faults"] == ["energy"]
+    assert mctau("replay", tmp_path / "log").returncode == 0
 
 
 def test_zero_ticks_are_the_initial_state(result, scenes):

@@ -13,6 +13,8 @@ set(fuzz_runs_can_drive 6000)
 set(fuzz_runs_can_host 4000)
 set(fuzz_runs_candump 100000)
 set(fuzz_runs_codec 20000)
+set(fuzz_runs_command 1000)
+set(fuzz_runs_log 3000)
 set(fuzz_runs_scene 100000)
 
 # --- what the compiler can do ---
@@ -36,20 +38,45 @@ mctau_fuzz_flags_work(MCTAU_HAVE_LIBFUZZER
 
 # --- the targets ---
 
-set(fuzz_sources ${MCTAU_CORE_SOURCES} ${MCTAU_HAL_SOURCES})
-list(FILTER fuzz_sources EXCLUDE REGEX "/hal/lcm/")
+set(fuzz_sources ${MCTAU_CORE_SOURCES} ${MCTAU_HAL_SOURCES} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/can_scenes.c)
 list(GET MCTAU_PRECISIONS 0 fuzz_precision)
 mctau_names(${fuzz_precision})
 
-# Core, HAL and what targets share, with a way to learn what was reached.
-function(mctau_fuzz_core name)
-    add_library(${name} STATIC EXCLUDE_FROM_ALL ${fuzz_sources} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/can_scenes.c)
+# The command's own sources, of one precision; those of its targets are in the command's folder (fuzz/command.c).
+find_path(CSV_INCLUDE_DIR csv.h)
+find_library(CSV_LIBRARY csv)
+mark_as_advanced(CSV_INCLUDE_DIR CSV_LIBRARY)
+set(fuzz_of_command command log)
+file(GLOB fuzz_command_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/mctau/*.c)
+set_source_files_properties(${fuzz_command_sources} PROPERTIES
+    COMPILE_OPTIONS "-w;-include;${CMAKE_CURRENT_SOURCE_DIR}/fuzz/command_inside.h")
+set_source_files_properties(${PROJECT_SOURCE_DIR}/tools/mctau/runner.c PROPERTIES
+    COMPILE_DEFINITIONS "runner_try=fuzz_try;runner_drive=fuzz_drive;hard_run_case=fuzz_hard_case")
+list(APPEND fuzz_command_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/command.c ${hard_sources})
+string(TOUPPER ${tag} TAG)
+
+# What targets share, with a way to learn what was reached.
+function(mctau_fuzz_library name sources)
+    add_library(${name} STATIC EXCLUDE_FROM_ALL ${sources})
     target_compile_options(${name} PRIVATE -O1 ${fuzz_sanitize} ${ARGN})
-    target_compile_definitions(${name} PRIVATE _POSIX_C_SOURCE=200809L MCTAU_HAVE_LCM=${MCTAU_HAVE_LCM}
-        MCT_OUTLINE)
     target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}
         ${PROJECT_BINARY_DIR}/include/${fuzz_precision} ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+endfunction()
+
+# NAME: core and HAL. NAME_command: the command, on top of them.
+function(mctau_fuzz_core name)
+    mctau_fuzz_library(${name} "${fuzz_sources}" ${ARGN})
+    target_compile_definitions(${name} PRIVATE _POSIX_C_SOURCE=200809L MCTAU_HAVE_LCM=${MCTAU_HAVE_LCM}
+        MCT_OUTLINE)
     target_link_libraries(${name} PUBLIC ${library})
+    if(CSV_INCLUDE_DIR AND CSV_LIBRARY)
+        mctau_fuzz_library(${name}_command "${fuzz_command_sources}" ${ARGN})
+        target_compile_definitions(${name}_command PRIVATE _GNU_SOURCE MCT_HAVE_${TAG}=1
+            MCT_RUNNER=mct_runner_${tag} MCT_SOURCE="${PROJECT_SOURCE_DIR}")
+        target_include_directories(${name}_command PUBLIC ${PROJECT_SOURCE_DIR}/tools/mctau)
+        target_include_directories(${name}_command SYSTEM PRIVATE ${CSV_INCLUDE_DIR})
+        target_link_libraries(${name}_command PUBLIC ${name} ${CSV_LIBRARY})
+    endif()
 endfunction()
 
 function(mctau_fuzz_program name core driver)
@@ -85,17 +112,26 @@ endif()
 foreach(file IN LISTS fuzz_targets)
     get_filename_component(name ${file} NAME_WE)
     string(REGEX REPLACE "^fuzz_" "fuzz_runs_" runs ${name})
-    if(fuzz_skipped)
-        mctau_skipped_test(${name} ${file} "${fuzz_skipped}")
+    string(REGEX REPLACE "^fuzz_" "" target ${name})
+    set(core "")
+    set(skipped "${fuzz_skipped}")
+    if(target IN_LIST fuzz_of_command)
+        set(core _command)
+        if(NOT CSV_INCLUDE_DIR OR NOT CSV_LIBRARY)
+            set(skipped "libcsv not found")
+        endif()
+    endif()
+    if(skipped)
+        mctau_skipped_test(${name} ${file} "${skipped}")
         continue()
     endif()
-    mctau_fuzz_program(${name}_smoke mctau_fuzz_core mctau_fuzz_random ${file})
+    mctau_fuzz_program(${name}_smoke mctau_fuzz_core${core} mctau_fuzz_random ${file})
     target_compile_options(${name}_smoke PRIVATE ${trace})
     add_dependencies(mctau_fuzz_smoke ${name}_smoke)
     add_test(NAME ${name} COMMAND ${name}_smoke --runs ${${runs}})
     mctau_test_properties(${name} ${file})
     if(TARGET mctau_fuzz)
-        mctau_fuzz_program(${name} mctau_fuzz_core_libfuzzer "" ${file} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/libfuzzer.c)
+        mctau_fuzz_program(${name} mctau_fuzz_core_libfuzzer${core} "" ${file} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/libfuzzer.c)
         target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
         target_link_options(${name} PRIVATE -fsanitize=fuzzer)
         set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)

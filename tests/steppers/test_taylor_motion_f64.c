@@ -223,8 +223,11 @@ static void test_without_rest_length_a_series_passes_the_pivot_as_if_it_were_not
     TEST_ASSERT_EQUAL_UINT64(0, plant.diverged_ticks);
 }
 
-/* With one, 1/R leaves a series nothing to converge to; there it takes the step of rk4, and is at worst as far off. */
-static void test_with_a_rest_length_a_series_passes_near_the_pivot_no_worse_than_rk4(void)
+/*
+ * With one, 1/R leaves a series nothing to converge to; there it takes rk4's parts of a step, each a quarter of the time in
+ * which the force turns: by order 4 that leaves 4^-5 of h^2 k l0/m, 1e-6 of the 0.5 m, and once more that for the way out.
+ */
+static void test_with_a_rest_length_every_stepper_passes_near_the_pivot_within_2e_6(void)
 {
     double worst[MCT_STEPPER_COUNT] = {0};
     for (double aside = 0.02; aside < 1; aside *= 2) {
@@ -252,8 +255,8 @@ static void test_with_a_rest_length_a_series_passes_near_the_pivot_no_worse_than
         }
         printf("\n");
     }
-    for (int stepper = MCT_STEPPER_TAYLOR4; stepper <= MCT_STEPPER_TAYLOR12; stepper++) {
-        TEST_ASSERT_TRUE(worst[stepper] <= 2 * worst[MCT_STEPPER_RK4]);
+    for (int stepper = MCT_STEPPER_RK4; stepper <= MCT_STEPPER_TAYLOR12; stepper++) {
+        TEST_ASSERT_TRUE(worst[stepper] < 2e-6);
     }
 }
 
@@ -264,6 +267,6 @@ int main(void)
     RUN_TEST(test_a_coordinate_gets_one_term_more_than_its_rate);
     RUN_TEST(test_order_12_follows_free_motion_at_20_ms_within_1e_12);
     RUN_TEST(test_without_rest_length_a_series_passes_the_pivot_as_if_it_were_not_there);
-    RUN_TEST(test_with_a_rest_length_a_series_passes_near_the_pivot_no_worse_than_rk4);
+    RUN_TEST(test_with_a_rest_length_every_stepper_passes_near_the_pivot_within_2e_6);
     return UNITY_END();
 }

@@ -193,6 +193,24 @@ static void test_the_same_run_leaves_the_same_log(void)
     TEST_ASSERT_EQUAL_MEMORY(first, second, sizes[0]);
 }
 
+/* Where there is no route, the warning says so, and the log has it all. */
+static void test_what_is_published_is_logged_too(void)
+{
+    const mct_telemetry_targets targets = {
+        .url = "udpm://239.255.76.67:7699?ttl=0", .log = path, .scene_text = swing_up_scene};
+    logged_run_prepare(&run, swing_up_scene, (mct_samples){NULL, 0});
+    logged_run_start(&run, &targets);
+    TEST_ASSERT_EQUAL_INT(MCT_OK, run.status);
+    const bool has_network = run.telemetry.lcm != NULL;
+    for (int i = 0; i < 3000; i++) {
+        logged_run_tick(&run);
+    }
+    mct_telemetry_stop(&run.telemetry);
+    TEST_ASSERT_TRUE(run.telemetry.counts.logged == 3000);
+    TEST_ASSERT_TRUE(run.telemetry.counts.published == (has_network ? 3000 : 0));
+    TEST_ASSERT_TRUE(has_network == (run.why.text[0] == '\0'));
+}
+
 /* --- what goes wrong --- */
 
 static void test_a_full_disk_is_counted_and_the_run_goes_on(void)
@@ -291,6 +309,7 @@ int main(void)
     RUN_TEST(test_a_full_ring_refuses_and_counts);
     RUN_TEST(test_a_log_holds_scene_ticks_and_end_with_simulated_time);
     RUN_TEST(test_the_same_run_leaves_the_same_log);
+    RUN_TEST(test_what_is_published_is_logged_too);
     RUN_TEST(test_a_full_disk_is_counted_and_the_run_goes_on);
     RUN_TEST(test_a_disk_that_fills_up_leaves_whole_events);
     RUN_TEST(test_a_start_that_fails_leaves_no_log);

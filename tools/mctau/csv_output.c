@@ -58,19 +58,22 @@ mct_status csv_output_open(csv_output *self, const char *path, mct_message *why)
     return MCT_OK;
 }
 
-static bool write_all(int file, const char *text, size_t length)
+/* Gives 0, or why not all of it was written. */
+static int write_all(int file, const char *text, size_t length)
 {
-    while (length > 0) {
+    enum { MOST_WRITES = 1000 };
+    int reason = EIO; /* nothing is written, and nobody says why */
+    for (int tries = 0; length > 0 && tries < MOST_WRITES; tries++) {
         const ssize_t written = write(file, text, length);
-        if (written < 0 && errno != EINTR) {
-            return false;
-        }
         if (written > 0) {
             text += written;
             length -= (size_t)written;
+        } else if (written < 0) {
+            reason = errno;
+            tries = reason == EINTR ? tries : MOST_WRITES;
         }
     }
-    return true;
+    return length > 0 ? reason : 0;
 }
 
 /* A file that lacks rows is worth nothing, and its space may be what another file needs. */
@@ -89,13 +92,14 @@ static void flush(csv_output *self)
     if (self->file < 0) {
         return;
     }
-    if (write_all(self->file, self->buffer, self->used)) {
-        self->rows += self->waiting;
-        self->waiting = 0;
-        self->used = 0;
-    } else {
-        fail(self, errno);
+    const int reason = write_all(self->file, self->buffer, self->used);
+    if (reason != 0) {
+        fail(self, reason);
+        return;
     }
+    self->rows += self->waiting;
+    self->waiting = 0;
+    self->used = 0;
 }
 
 void csv_output_headers(csv_output *self, const char *line, size_t length)
@@ -131,8 +135,14 @@ void csv_output_close(csv_output *self)
     }
     const int file = self->file;
     self->file = -1;
-    if (close(file) != 0 || (self->temporary != NULL && rename(self->temporary, self->path) != 0)) {
-        fail(self, errno);
+    /* On the disk before it gets its name: else a power failure could leave an empty file of that name. */
+    int reason = self->temporary != NULL && fsync(file) != 0 ? errno : 0;
+    reason = close(file) != 0 && reason == 0 ? errno : reason;
+    if (reason == 0 && self->temporary != NULL && rename(self->temporary, self->path) != 0) {
+        reason = errno;
+    }
+    if (reason != 0) {
+        fail(self, reason);
     }
     free(self->temporary);
     self->temporary = NULL;

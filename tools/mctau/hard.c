@@ -153,6 +153,22 @@ static const char *cell_of(const matrix *self, const row *one, int method, char 
     return text;
 }
 
+/* A paragraph in lines of at most 110 columns: the first has begun, the others are indented. */
+static void print_wrapped(const char *text, size_t length, size_t column, size_t indent)
+{
+    for (size_t word; length > 0; text += word, length -= word) {
+        word = strcspn(text + 1, " ") + 1;
+        word = word < length ? word : length;
+        if (column + word > 110) {
+            printf("\n%*s", (int)indent, "");
+            column = indent;
+        }
+        column += word;
+        printf("%.*s", (int)word, text);
+    }
+    printf("\n");
+}
+
 static void print_rules(const matrix *self)
 {
     char cell[CELL + 1];
@@ -164,7 +180,8 @@ static void print_rules(const matrix *self)
         figure_of(criterion, cell);
         printf("%9s ", criterion > 0 ? cell : "any");
         figure_of(one->results[HARD_NAIVE].error, cell);
-        printf("%8s  %s\n", cell, one->about->rule);
+        printf("%8s  ", cell);
+        print_wrapped(one->about->rule, strlen(one->about->rule), 34, 33);
     }
 }
 
@@ -220,22 +237,6 @@ static bool is_same_reason(const row *one, int a, int b)
            strncmp(first, second, strcspn(first, ";")) == 0;
 }
 
-/* A paragraph in lines of at most 110 columns, the first of which has begun. */
-static void print_wrapped(const char *text, size_t length, size_t column)
-{
-    for (size_t word; length > 0; text += word, length -= word) {
-        word = strcspn(text + 1, " ") + 1;
-        word = word < length ? word : length;
-        if (column + word > 110) {
-            printf("\n%9s", "");
-            column = 9;
-        }
-        column += word;
-        printf("%.*s", (int)word, text);
-    }
-    printf("\n");
-}
-
 /* One paragraph for all methods that are refused for the same reason. */
 static void print_reasons(const row *one)
 {
@@ -254,7 +255,7 @@ static void print_reasons(const row *one)
         const char *reason = reason_of(&one->results[method], method);
         reason += strncmp(reason, ", which ", 8) == 0 ? 8 : 0;
         printf("%4d %s: ", one->about->number, names);
-        print_wrapped(reason, strcspn(reason, ";"), 7 + strlen(names));
+        print_wrapped(reason, strcspn(reason, ";"), 7 + strlen(names), 9);
     }
 }
 

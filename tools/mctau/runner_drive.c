@@ -153,7 +153,9 @@ static void track_deviation(drive_run *self)
 static void pace(drive_run *self)
 {
     if (!self->drive.lockstep) {
-        mct_clock_wait(&self->clock);
+        if (mct_clock_wait(&self->clock) != MCT_OK) {
+            sleep_us(self->tick_us);
+        }
     } else if (!self->drive.released) {
         sleep_us(self->tick_us); /* nobody leads yet */
     } else {

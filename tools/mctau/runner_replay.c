@@ -461,7 +461,7 @@ static mct_status read_scene(replay *self)
         return say_damaged(&self->log, self->why);
     }
     for (uint32_t i = 0; i < count; i++) {
-        overrides[i] = (mct_override){take_string(&at), "--set"};
+        overrides[i] = (mct_override){take_string(&at), self->log.path};
     }
     if (at.failed) {
         return say_damaged(&self->log, self->why);
