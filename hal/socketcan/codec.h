@@ -83,6 +83,7 @@ static inline int32_t mct_can_counter(double value)
 {
     const double span = 4294967296.0;
     /* Beyond this every double is a multiple of the span. */
+    /* cppcheck-suppress incorrectLogicOperator; it reads the 0x1 of 0x1p85 alone */
     if (!(value < 0x1p85 && value > -0x1p85)) {
         return 0;
     }

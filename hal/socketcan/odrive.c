@@ -559,7 +559,7 @@ static bool report(mct_can_device *device, int number, mct_can_frame *frame)
 
 #define PROTOCOL(documentation, first, count)                                                               \
     {                                                                                                       \
-        .name = "odrive", .doc = documentation, .extended = false, .has_spare = false, .has_echo = false,   \
+        .name = "odrive", .doc = (documentation), .extended = false, .has_spare = false, .has_echo = false, \
         .has_state = true, .message_count = (count), .messages = messages + (first),                        \
         .identifier = identifier, .hear = hear, .command = command, .arm = arm, .stop = stop, .obey = obey, \
         .report = report,                                                                                   \

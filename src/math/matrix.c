@@ -36,8 +36,8 @@ double mct_sqrt(double x)
     }
     /* The leading bit of the rounded root counts as one in the exponent's field. */
     const uint64_t rounded = (root + 1) >> 1;
-    const uint64_t field = (uint64_t)((exponent - odd) / 2 + 1022);
-    const uint64_t result_bits = (field << 52) + rounded;
+    const int field = (exponent - odd) / 2 + 1022;
+    const uint64_t result_bits = ((uint64_t)field << 52) + rounded;
     double result;
     memcpy(&result, &result_bits, sizeof result);
     return subnormal ? result * 0x1p-27 : result;

@@ -603,7 +603,7 @@ static void add_remedy(mct_message *message, const mct_scene *scene, const mct_p
     mct_message_add(message, " s");
     if (scene->stride > 1 && needed <= 1) {
         mct_message_add(message, ", a smaller scene.stride");
-    } else if (needed <= substeps->maximum) {
+    } else if (needed <= substeps->maximum) { /* NOLINT(*NullDereference): the table has it */
         mct_message_add(message, ", scene.substeps from ");
         mct_message_add_integer(message, (long long)(needed + 0.5));
     } else {

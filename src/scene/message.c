@@ -21,6 +21,7 @@ static size_t length_of(const mct_message *message)
 
 static bool is_cut(const mct_message *message, size_t length)
 {
+    /* cppcheck-suppress pointerOutOfBoundsCond; length_of ends at ROOM */
     return length >= CUT && mct_text_equal(message->text + length - 3, ellipsis);
 }
 

@@ -151,9 +151,9 @@ static const mct_field telemetry_fields[] = {
     TEXT("log", log, "path of an event log; empty: none"),
 };
 
-#define TABLE(name, fields, doc)                                   \
-    {                                                              \
-        name, doc, (int)(sizeof fields / sizeof fields[0]), fields \
+#define TABLE(name, fields, doc)                                       \
+    {                                                                  \
+        name, doc, (int)(sizeof(fields) / sizeof(fields)[0]), (fields) \
     }
 
 const mct_scene_table mct_scene_tables[MCT_SCENE_TABLE_COUNT] = {

@@ -121,8 +121,8 @@ MCT_INLINE void mct_hinge_series(const void *constants, unsigned effects, int or
     }
     w[0] = x[1];
     if (effects & MCT_COULOMB_EXACT) {
-        const mct_real direction = slip->direction[0];
-        if (direction == 0) { /* the load of a body at rest is constant */
+        const mct_real direction = slip->direction[0]; /* NOLINT(*NullDereference): exact friction has it */
+        if (direction == 0) {                          /* the load of a body at rest is constant */
             turn = 0;
             loads[0][0] = mct_hinge_torque(k, effects & ~(unsigned)MCT_DRAG, s[0], c[0], w[0], u);
             for (int n = 1; n < order; n++) {

@@ -503,6 +503,7 @@ MCT_INLINE void mct_rotor_free_series(const mct_rotor *k, int order, const mct_r
     mct_real change[3], across[3], third[3], e[4], turn[4];
     MCT_UNROLL
     for (int i = 0; i < 3; i++) {
+        /* cppcheck-suppress uninitvar; the first round of the loop sets it */
         dw[i] = first[i] + rest[i];
         change[i] = inverse * (k->moment[i] * dw[i]);
     }
