@@ -138,19 +138,22 @@ static const uint16_t spring_pendulum_leap[8] = {
     1716,2096,1920,2300,1800,2160,1984,2344,
 };
 static const uint16_t spring_pendulum_rk4[8] = {
-    2520,2880,2836,3300,3486,5200,3590,5328,
+    2520,2880,2836,3300,5444,7150,5548,7276,
 };
 static const uint16_t spring_pendulum_taylor4[8] = {
-    3532,4036,4388,4826,6240,6794,6308,6906,
+    5706,6138,6284,6644,8218,8732,8278,8844,
 };
 static const uint16_t spring_pendulum_taylor6[8] = {
-    3804,4300,4872,5324,6700,7558,6804,7670,
+    5972,6406,6772,7108,8662,9480,8750,9628,
 };
 static const uint16_t spring_pendulum_taylor8[8] = {
-    4088,4568,5348,5808,7274,8616,7386,8768,
+    6244,6674,7236,7572,9216,10562,9332,10730,
 };
 static const uint16_t spring_pendulum_taylor12[8] = {
-    4636,5104,6332,6784,5448,5856,6700,7044,
+    6780,7206,8220,8570,7442,7794,8428,8682,
+};
+static const uint16_t spring_pendulum_split3[8] = {
+    476,1604,540,1680,480,1608,544,1684,
 };
 static const uint16_t linked_particles_seed[2] = {
     138,146,
@@ -419,6 +422,7 @@ static const measured_system measured_systems[MCT_SYSTEM_COUNT] = {
         [MCT_STEPPER_TAYLOR6] = spring_pendulum_taylor6,
         [MCT_STEPPER_TAYLOR8] = spring_pendulum_taylor8,
         [MCT_STEPPER_TAYLOR12] = spring_pendulum_taylor12,
+        [MCT_STEPPER_SPLIT3] = spring_pendulum_split3,
     }},
     {0x8000, {
         [MCT_STEPPER_SEED] = linked_particles_seed,
