@@ -122,6 +122,39 @@ static void test_what_toml_forbids_is_refused_with_place_and_reason(void)
     assert_refused("[a]\nb = '\xC0\x80'", "x.toml:2:6: these bytes are not UTF-8");
 }
 
+/* The ends of each range of first bytes and of those that they restrict (RFC 3629, section 4). */
+static void test_text_is_utf_8_in_its_shortest_form_up_to_u_10ffff_without_surrogates(void)
+{
+    static const char *const good[] = {"\xC2\x80",     "\xDF\xBF",         "\xE0\xA0\x80",    "\xED\x9F\xBF",
+                                       "\xEE\x80\x80", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"};
+    static const char *const bad[] = {"\x80",
+                                      "\xBF",
+                                      "\xC1\xBF",
+                                      "\xE0\x9F\xBF",
+                                      "\xED\xA0\x80",
+                                      "\xF0\x8F\xBF\xBF",
+                                      "\xF4\x90\x80\x80",
+                                      "\xF5\x80\x80\x80",
+                                      "\xC2\x41",
+                                      "\xE1\x80\x41",
+                                      "\xF1\x80\x80",
+                                      "\xFF"};
+    char text[32];
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        snprintf(text, sizeof text, "[a]\nb = '%s'", good[i]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, read_text(text), why.text);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        snprintf(text, sizeof text, "[a]\nb = '%s'", bad[i]);
+        assert_refused(text, "x.toml:2:6: these bytes are not UTF-8");
+        snprintf(text, sizeof text, "[a]\n# %s", bad[i]); /* cut off by the end of the text */
+        assert_refused(text, "x.toml:2:3: these bytes are not UTF-8");
+    }
+    static const char cut[] = "# \xE2\x82\xAC"; /* a character that goes on behind the end of the text */
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_toml_read(cut, 5, "x.toml", &toml, &why));
+    TEST_ASSERT_EQUAL_INT(MCT_ERROR_SYNTAX, mct_toml_read(cut, 4, "x.toml", &toml, &why));
+}
+
 static void test_what_is_outside_of_the_subset_is_called_that(void)
 {
     static const char *const texts[] = {
@@ -179,6 +212,7 @@ int main(void)
     RUN_TEST(test_a_text_too_long_for_its_buffer_is_cut_and_says_its_length);
     RUN_TEST(test_lists_of_numbers_span_lines);
     RUN_TEST(test_what_toml_forbids_is_refused_with_place_and_reason);
+    RUN_TEST(test_text_is_utf_8_in_its_shortest_form_up_to_u_10ffff_without_surrogates);
     RUN_TEST(test_what_is_outside_of_the_subset_is_called_that);
     RUN_TEST(test_more_than_storage_holds_is_refused_as_such);
     RUN_TEST(test_the_text_is_read_to_its_length_and_no_further);
