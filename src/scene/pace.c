@@ -122,7 +122,7 @@ static double square_of(const trial *self, const double *M, const double *v)
     return sum;
 }
 
-/* By a step; 0 within rounding. */
+/* By a step; 0 within rounding, that of the places as well: energies are those of x without its compensation. */
 static double energy_gained(const trial *self, const mct_state *start, const mct_state *end)
 {
     mct_evaluation a, b;
@@ -131,7 +131,10 @@ static double energy_gained(const trial *self, const mct_state *start, const mct
     const double potential = (double)b.potential_energy - (double)a.potential_energy;
     const double gained = potential + ((double)b.kinetic_energy - (double)a.kinetic_energy) +
                           ((double)b.magnetic_energy - (double)a.magnetic_energy);
-    const double size = (double)a.kinetic_energy + mct_abs((double)a.potential_energy);
+    double size = (double)a.kinetic_energy + mct_abs((double)a.potential_energy);
+    for (int i = 0; i < self->coordinates; i++) {
+        size += mct_abs((double)a.tau[i] * (double)start->x[i]);
+    }
     return gained > 64 * (double)MCT_REAL_EPSILON * size ? gained : 0;
 }
 

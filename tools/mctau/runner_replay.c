@@ -394,7 +394,9 @@ static mct_status replay_decoded(replay *self)
         return MCT_OK;
     }
     memset(&self->given, 0, sizeof self->given);
-    memcpy(self->given.counts, recorded->counts, sizeof recorded->counts[0] * (size_t)recorded->encoders);
+    for (int i = 0; i < recorded->encoders; i++) {
+        self->given.counts[i] = recorded->counts[i];
+    }
     self->given.age_us = (uint32_t)recorded->age_us;
     self->given.flags = (uint32_t)recorded->flags;
     self->wanted = recorded->wanted;
