@@ -29,8 +29,8 @@ def scenes(source):
 def result(mctau):
     """result("run", scene, ...): the object that --json prints, once it is certain that nothing else was said."""
 
-    def run(*arguments, exit_code=0):
-        done = mctau(*arguments, "--json")
+    def run(*arguments, exit_code=0, **options):
+        done = mctau(*arguments, "--json", **options)
         assert done.stderr == ""
         assert done.returncode == exit_code
         return json.loads(done.stdout)
