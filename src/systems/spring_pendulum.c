@@ -724,8 +724,29 @@ typedef struct {
  */
 MCT_INLINE mct_real held_pull(const constants_t *k, unsigned effects, const split_state *now)
 {
-    const mct_real turning = now->momentum * now->momentum * k->resting_inverse_cube;
-    return (effects & MCT_GRAVITY) ? turning - k->gravity * now->s : turning;
+    mct_real pull = MCT_NOTHING;
+    if (effects & MCT_SPRING) {
+        pull += now->momentum * now->momentum * k->resting_inverse_cube;
+    }
+    if (effects & MCT_GRAVITY) {
+        pull -= k->gravity * now->s;
+    }
+    return pull;
+}
+
+/* What spring, friction and the held pull change along the rod: of the way (row 0), or of the rate (row 1). */
+MCT_INLINE mct_real along_rod(const constants_t *k, unsigned effects, int row, const split_state *now)
+{
+    const mct_real *const share = k->along[row];
+    mct_real change = MCT_NOTHING;
+    if (effects & MCT_SPRING) {
+        change += share[0] * (now->r - k->rest_length);
+    }
+    change += share[1] * now->rd;
+    if (effects & (MCT_SPRING | MCT_GRAVITY)) {
+        change += share[2] * held_pull(k, effects, now);
+    }
+    return change;
 }
 
 /* Torque and weight across the rod for half a step. */
@@ -748,10 +769,13 @@ MCT_INLINE void split_slow(const constants_t *k, unsigned effects, split_state *
 }
 
 /* Pull of the turning for half a step, beyond that at the rest length. */
-MCT_INLINE void split_pull(const constants_t *k, split_state *now)
+MCT_INLINE void split_pull(const constants_t *k, unsigned effects, split_state *now)
 {
-    const mct_real inverse_cube = 1 / (now->r * now->r * now->r);
-    now->rd += k->step.half * (now->momentum * now->momentum * (inverse_cube - k->resting_inverse_cube));
+    mct_real inverse_cube = 1 / (now->r * now->r * now->r);
+    if (effects & MCT_SPRING) {
+        inverse_cube -= k->resting_inverse_cube;
+    }
+    now->rd += k->step.half * (now->momentum * now->momentum * inverse_cube);
 }
 
 /*
@@ -774,17 +798,15 @@ MCT_INLINE void split3(const constants_t *k, unsigned effects, const mct_real *x
     if (effects & MCT_GRAVITY) {
         mct_sincos_near(x[1] + before, before, s, c, &now.s, &now.c);
     }
-    split_pull(k, &now);
-    const mct_real pull = held_pull(k, effects, &now);
-    const mct_real stretch = now.r - k->rest_length;
-    dx[0] = k->along[0][0] * stretch + k->along[0][1] * now.rd + k->along[0][2] * pull;
-    now.rd += k->along[1][0] * stretch + k->along[1][1] * now.rd + k->along[1][2] * pull;
+    split_pull(k, effects, &now);
+    dx[0] = along_rod(k, effects, 0, &now);
+    now.rd += along_rod(k, effects, 1, &now);
     now.r = x[0] + dx[0];
     if (!(now.r > 0)) {
         fail(dx);
         return;
     }
-    split_pull(k, &now);
+    split_pull(k, effects, &now);
     dx[1] = before + k->step.half * now.momentum / (now.r * now.r);
     if (effects & MCT_GRAVITY) {
         mct_sincos_near(x[1] + dx[1], dx[1], s, c, &now.s, &now.c);
