@@ -153,7 +153,7 @@ static const uint16_t spring_pendulum_taylor12[8] = {
     6780,7206,8220,8570,7442,7794,8428,8682,
 };
 static const uint16_t spring_pendulum_split3[8] = {
-    476,1604,540,1680,480,1608,544,1684,
+    404,1482,460,1580,476,1600,544,1676,
 };
 static const uint16_t linked_particles_seed[2] = {
     138,146,
