@@ -566,7 +566,15 @@ static mct_status examine_system(const mct_scene *scene, const mct_system *syste
     return MCT_ERROR_UNSUITED;
 }
 
-/* "at pole_angle = 3.14159, where cart_position moves 1e-06 of its inertia" */
+/* "0.001 s by rk4" */
+static void add_step(mct_message *message, const mct_scene *scene)
+{
+    mct_message_add_number(message, mct_scene_step(scene));
+    mct_message_add(message, " s by ");
+    mct_message_add(message, mct_steppers[scene->stepper].name);
+}
+
+/* "at pole_angle = 3.14159, where cart_position feels 1e-06 of its inertia" */
 static void add_place_of_pace(mct_message *message, const mct_system *system, const mct_pace *pace)
 {
     if (pace->coordinate >= 0) {
@@ -584,7 +592,7 @@ static void add_place_of_pace(mct_message *message, const mct_system *system, co
     }
 }
 
-/* "; steps up to 3.9e-06 s do: scene.substeps from 256" */
+/* "steps up to 3.9e-06 s, scene.substeps from 256" */
 static void add_remedy(mct_message *message, const mct_scene *scene, const mct_pace *pace)
 {
     const mct_field *substeps = NULL;
@@ -627,9 +635,7 @@ static mct_status examine_pace(const mct_scene *scene, const mct_system *system,
     blame->table = "scene";
     blame->key = "dt";
     mct_message_add(sentence, "found steps of ");
-    mct_message_add_number(sentence, mct_scene_step(scene));
-    mct_message_add(sentence, " s by ");
-    mct_message_add(sentence, mct_steppers[scene->stepper].name);
+    add_step(sentence, scene);
     mct_message_add(sentence, ", which do not follow the motion");
     add_place_of_pace(sentence, system, &pace);
     mct_message_add(sentence, "; allowed ");
@@ -729,9 +735,7 @@ static bool note_pace(const mct_scene *scene, const mct_system *system, mct_mess
     }
     mct_message_clear(note);
     mct_message_add(note, "scene.dt: steps of ");
-    mct_message_add_number(note, mct_scene_step(scene));
-    mct_message_add(note, " s by ");
-    mct_message_add(note, mct_steppers[scene->stepper].name);
+    add_step(note, scene);
     mct_message_add(note, " are long for the motion");
     add_place_of_pace(note, system, &pace);
     mct_message_add(note, ": two of half the length change rates by ");
