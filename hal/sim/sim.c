@@ -81,11 +81,14 @@ static bool has_fault(const mct_sim *sim, int32_t fault)
 
 static mct_status sim_open(void *context, mct_message *why)
 {
-    (void)why; /* nothing can go wrong */
     mct_sim *sim = context;
     sim->input = 0;
+    if (sim->realtime && sim->clock == NULL) {
+        mct_message_add(why, "scene.realtime: found true, and no clock in mct_sim");
+        return MCT_ERROR_ARGUMENT;
+    }
     if (sim->realtime) {
-        mct_clock_start(&sim->clock, sim->dt);
+        mct_clock_start(sim->clock, sim->dt);
     }
     return MCT_OK;
 }
@@ -128,7 +131,7 @@ static mct_status sim_wait_tick(void *context)
 {
     mct_sim *sim = context;
     mct_plant_step(&sim->plant, sim->input);
-    return sim->realtime ? mct_clock_wait(&sim->clock) : MCT_OK;
+    return sim->realtime ? mct_clock_wait(sim->clock) : MCT_OK;
 }
 
 static void sim_arm(void *context)
@@ -150,8 +153,9 @@ static const mct_state *sim_plant(void *context)
 
 static const mct_timing *sim_timing(void *context)
 {
+    static const mct_timing none = {0};
     const mct_sim *sim = context;
-    return &sim->clock.timing;
+    return sim->realtime && sim->clock != NULL ? &sim->clock->timing : &none;
 }
 
 static mct_counters sim_counters(void *context)

@@ -36,7 +36,7 @@ typedef struct {
     /* clock */
     bool realtime;
     double dt;
-    mct_clock clock;
+    mct_clock *clock; /**< of a scene in real time, set before open and caller-owned; not read in lockstep */
 } mct_sim;
 
 /**

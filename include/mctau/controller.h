@@ -58,15 +58,17 @@ typedef struct mct_controller {
     mct_real track_damping;      /**< [1/s] */
     mct_real track_half_length;  /**< [m] */
     mct_observer observer;
-    mct_constants constants; /**< of the model */
+    const mct_constants *constants; /**< of the model; caller-owned */
 } mct_controller;
 
 /**
  * Computes gains, catch region and pumping from the scene's model.
+ * @param constants  written: those of the model; must outlive the controller, and is not changed afterwards
  * @return MCT_OK; MCT_ERROR_NO_CONVERGENCE when the model cannot be stabilised (no motor torque, say), with a
  * sentence in `why`
  */
-mct_status mct_controller_init(mct_controller *controller, const mct_scene *scene, mct_message *why);
+mct_status mct_controller_init(mct_controller *controller, mct_constants *constants, const mct_scene *scene,
+                               mct_message *why);
 
 /**
  * One tick: takes in a reading, returns the wanted input [V]; the supervisor decides what gets through.

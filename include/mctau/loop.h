@@ -12,13 +12,19 @@
 #include "mctau/scene.h"
 #include "mctau/supervisor.h"
 
+/** What a loop goes by: computed once, never changed, so that it may lie in a microcontroller's flash. */
+typedef struct {
+    mct_constants model; /**< of the controller */
+    mct_input input;     /**< of an open loop */
+} mct_plan;
+
 typedef struct {
     mct_hal hal;
     mct_ring *ring; /**< NULL: records go nowhere */
     bool controlled;
     uint64_t tick;
-    mct_real applied; /**< input since the last tick [V] */
-    mct_input input;
+    mct_real applied;     /**< input since the last tick [V] */
+    const mct_plan *plan; /**< caller-owned */
     mct_controller controller;
     mct_supervisor supervisor;
     bool rearm;        /**< asked for by mct_loop_rearm */
@@ -27,6 +33,7 @@ typedef struct {
 
 /**
  * Prepares a loop; opens nothing.
+ * @param plan     written; must outlive the loop
  * @param scene    read during the call only
  * @param hal      open before the first tick, close after the last
  * @param ring     where records go, or NULL
@@ -34,7 +41,7 @@ typedef struct {
  * @param why      a sentence on failure
  * @return MCT_OK, or what mct_controller_init says
  */
-mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring,
+mct_status mct_loop_init(mct_loop *loop, mct_plan *plan, const mct_scene *scene, mct_hal hal, mct_ring *ring,
                          mct_samples samples, mct_message *why);
 
 /**

@@ -134,7 +134,7 @@ static void prepare_swing_up(mct_controller *controller, const mct_scene *scene)
     const mct_system *system = controller->system;
     mct_evaluation upright;
     mct_real x[MCT_MAX_STATES] = {0};
-    system->evaluate(&controller->constants, controller->effects, x, 0, &upright);
+    system->evaluate(controller->constants, controller->effects, x, 0, &upright);
     const double lift = 2 * (double)upright.potential_energy;
     const int angle = system->actuation->upright_coordinate;
     const double inertia = (double)upright.M[angle][angle];
@@ -231,7 +231,7 @@ static void learn_gravity(mct_controller *controller)
 /* The wheel's reaction does the work -torque arm_rate on the arm. */
 static mct_real swing_up_reaction_wheel(mct_controller *controller)
 {
-    const mct_reaction_wheel_constants *k = &controller->constants.reaction_wheel;
+    const mct_reaction_wheel_constants *k = &controller->constants->reaction_wheel;
     learn_gravity(controller);
     const mct_real inertia = k->arm_inertia / (1 + controller->observer.excess);
     return controller->limit * pumping(controller, inertia, k->weight_moment, -controller->observer.x[2]);
@@ -260,7 +260,7 @@ static mct_real kept_on_track(const mct_controller *controller, mct_real positio
  */
 static mct_real swing_up_cart_pole(mct_controller *controller)
 {
-    const mct_cart_pole_constants *k = &controller->constants.cart_pole;
+    const mct_cart_pole_constants *k = &controller->constants->cart_pole;
     const mct_real *x = controller->observer.x;
     mct_real s, c;
     mct_sincos(x[1], &s, &c);
@@ -271,8 +271,8 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
                           controller->track_damping * x[2]);
     mct_real without[MCT_MAX_ENCODERS];
     mct_real with_one_volt[MCT_MAX_ENCODERS];
-    controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 0, without);
-    controller->system->actuation->accelerate(&controller->constants, controller->effects, x, 1,
+    controller->system->actuation->accelerate(controller->constants, controller->effects, x, 0, without);
+    controller->system->actuation->accelerate(controller->constants, controller->effects, x, 1,
                                               with_one_volt);
     return (wanted - without[0]) / (with_one_volt[0] - without[0]);
 }
@@ -288,11 +288,13 @@ static const struct {
 } laws[] = {{&mct_cart_pole, swing_up_cart_pole, false},
             {&mct_reaction_wheel, swing_up_reaction_wheel, true}};
 
-mct_status mct_controller_init(mct_controller *controller, const mct_scene *scene, mct_message *why)
+mct_status mct_controller_init(mct_controller *controller, mct_constants *constants, const mct_scene *scene,
+                               mct_message *why)
 {
     const mct_system *system = mct_systems[scene->system];
     memset(controller, 0, sizeof *controller);
     controller->system = system;
+    controller->constants = constants;
     controller->effects = mct_scene_effects(scene);
     controller->mode = MCT_MODE_WAIT;
     controller->capture = (mct_real)scene->capture;
@@ -311,11 +313,11 @@ mct_status mct_controller_init(mct_controller *controller, const mct_scene *scen
     }
     const double limit = scene->parameters[system->actuation->supply_parameter];
     controller->limit = (mct_real)limit;
-    mct_status status = system->prepare(scene, scene->dt, &controller->constants, why);
+    mct_status status = system->prepare(scene, scene->dt, constants, why);
     if (status != MCT_OK) {
         return status;
     }
-    mct_observer_init(&controller->observer, scene, &controller->constants);
+    mct_observer_init(&controller->observer, scene, constants);
     sampled_model model;
     status = sample(scene, &model);
     if (status == MCT_OK) {

@@ -2,16 +2,18 @@
 
 #include <string.h>
 
-mct_status mct_loop_init(mct_loop *loop, const mct_scene *scene, mct_hal hal, mct_ring *ring,
+mct_status mct_loop_init(mct_loop *loop, mct_plan *plan, const mct_scene *scene, mct_hal hal, mct_ring *ring,
                          mct_samples samples, mct_message *why)
 {
     memset(loop, 0, sizeof *loop);
+    memset(plan, 0, sizeof *plan);
+    loop->plan = plan;
     loop->hal = hal;
     loop->ring = ring;
     loop->controlled = scene->controller != MCT_CONTROLLER_NONE;
-    mct_input_init(&loop->input, scene, samples);
+    mct_input_init(&plan->input, scene, samples);
     mct_supervisor_init(&loop->supervisor, scene);
-    return loop->controlled ? mct_controller_init(&loop->controller, scene, why) : MCT_OK;
+    return loop->controlled ? mct_controller_init(&loop->controller, &plan->model, scene, why) : MCT_OK;
 }
 
 /* Fills the record of this tick but for what the HAL alone knows. */
@@ -74,7 +76,7 @@ void mct_loop_tick(mct_loop *loop)
         mct_supervisor_watch_balance(supervisor, record->mode == MCT_MODE_BALANCE);
     } else {
         record->mode = MCT_MODE_OPEN_LOOP;
-        record->wanted = mct_input_at(&loop->input, loop->tick);
+        record->wanted = mct_input_at(&loop->plan->input, loop->tick);
     }
     record->applied = mct_supervisor_pass(supervisor, &record->reading, estimate, record->wanted);
     if (was_well && supervisor->latched != 0) {

@@ -32,8 +32,9 @@ int main(void)
         mct_scene scene;
         mct_message why = {""};
         static mct_controller controller;
+        static mct_constants constants;
         if (mct_scene_read(text, strlen(text), "text", overrides, count, &scene, &why) != MCT_OK ||
-            mct_controller_init(&controller, &scene, &why) != MCT_OK) {
+            mct_controller_init(&controller, &constants, &scene, &why) != MCT_OK) {
             fprintf(stderr, "%s\n", why.text);
             return 1;
         }

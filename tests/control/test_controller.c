@@ -142,7 +142,8 @@ static void test_inside_the_region_full_input_catches_and_outside_it_does_not(vo
     for (int k = 0; k < 200; k++) {
         const mct_scene scene = k < 2 ? swing_up_scene(k) : random_scene(k % 2, &random);
         mct_controller controller;
-        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &scene, NULL));
+        mct_constants constants;
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &constants, &scene, NULL));
         const sampled model = sample(&scene);
         double towards[STATES] = {0};
         advance(&model, towards, 1);
@@ -169,7 +170,8 @@ static void test_the_gains_bring_the_linear_model_home(void)
     for (int k = 0; k < 100; k++) {
         const mct_scene scene = k < 2 ? swing_up_scene(k) : random_scene(k % 2, &random);
         mct_controller controller;
-        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &scene, NULL));
+        mct_constants constants;
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &constants, &scene, NULL));
         const sampled model = sample(&scene);
         double x[STATES];
         draw_state(&controller, &random, 0.01, x);
@@ -203,9 +205,10 @@ static void test_a_controller_waits_swings_up_balances_and_begins_again(void)
         const int upright = mct_systems[system]->actuation->upright_coordinate;
         mct_scene scene = swing_up_scene(system);
         mct_controller controller;
+        mct_constants constants;
         mct_reading reading;
         memset(&reading, 0, sizeof reading);
-        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &scene, NULL));
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &constants, &scene, NULL));
         TEST_ASSERT_EQUAL_INT(MCT_MODE_WAIT, controller.mode);
         reading.flags = MCT_READING_MISSING;
         TEST_ASSERT_TRUE(mct_controller_update(&controller, &reading, 0) == 0);
@@ -215,7 +218,7 @@ static void test_a_controller_waits_swings_up_balances_and_begins_again(void)
         TEST_ASSERT_EQUAL_INT(MCT_MODE_SWING_UP, controller.mode);
 
         scene.initial[upright] = 0.01;
-        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &scene, NULL));
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &constants, &scene, NULL));
         mct_controller_update(&controller, &reading, 0);
         TEST_ASSERT_EQUAL_INT(MCT_MODE_BALANCE, controller.mode);
         for (int k = 0; k < 400 && controller.mode == MCT_MODE_BALANCE; k++) {
@@ -234,8 +237,9 @@ static void test_a_scene_that_no_voltage_can_balance_is_refused_with_a_sentence(
             mct_scene scene = swing_up_scene(system);
             *parameter_of(&scene, dead[k]) = 0;
             mct_controller controller;
+            mct_constants constants;
             mct_message why = {""};
-            TEST_ASSERT_TRUE(mct_controller_init(&controller, &scene, &why) != MCT_OK);
+            TEST_ASSERT_TRUE(mct_controller_init(&controller, &constants, &scene, &why) != MCT_OK);
             TEST_ASSERT_TRUE(strlen(why.text) > 20);
         }
     }

@@ -359,6 +359,7 @@ static void test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_
 /* ---- in the loop ---- */
 
 static mct_loop loop;
+static mct_plan plan;
 static mct_sim sim;
 
 static void start_loop(const mct_scene *scene)
@@ -367,7 +368,7 @@ static void start_loop(const mct_scene *scene)
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_sim_init(&sim, scene, &why), why.text);
     const mct_hal hal = mct_sim_hal(&sim);
     TEST_ASSERT_EQUAL_INT_MESSAGE(
-        MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
+        MCT_OK, mct_loop_init(&loop, &plan, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context, NULL));
 }
 

@@ -273,9 +273,10 @@ static void run_loop(const mct_scene *scene, const char *name, const char *varia
 {
     static mct_sim sim;
     static mct_loop loop;
+    static mct_plan plan;
     uint64_t hash = 0;
     if (mct_sim_init(&sim, scene, NULL) != MCT_OK ||
-        mct_loop_init(&loop, scene, mct_sim_hal(&sim), NULL, (mct_samples){NULL, 0}, NULL) != MCT_OK) {
+        mct_loop_init(&loop, &plan, scene, mct_sim_hal(&sim), NULL, (mct_samples){NULL, 0}, NULL) != MCT_OK) {
         fail(name, "not accepted");
     }
     loop.hal.ops->open(loop.hal.context, NULL);

@@ -40,6 +40,7 @@ typedef struct {
     mct_can_drive drive;
     mct_can can;
     mct_loop loop;
+    mct_plan plan;
     mct_can_transport bus;                   /* the host's end of the ring */
     mct_can_device drives[MCT_CAN_MAX_AXES]; /* who read what the host sends */
     /* the way between */
@@ -497,7 +498,8 @@ static void start(int scene)
                   MCT_OK,
               "the host of scene %d: %s", scene, why.text);
     const mct_hal hal = {&watched, &self.can};
-    FUZZ_RULE(mct_loop_init(&self.loop, &self.scene, hal, NULL, (mct_samples){NULL, 0}, &why) == MCT_OK,
+    FUZZ_RULE(mct_loop_init(&self.loop, &self.plan, &self.scene, hal, NULL, (mct_samples){NULL, 0}, &why) ==
+                  MCT_OK,
               "the loop of scene %d: %s", scene, why.text);
     FUZZ_RULE(hal.ops->open(hal.context, &why) == MCT_OK, "the start of scene %d: %s", scene, why.text);
     for (int i = 0; i < self.can.axes.count; i++) {

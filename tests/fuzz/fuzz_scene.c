@@ -32,6 +32,7 @@ static void prepare(const mct_scene *scene)
     static mct_can can;
     static mct_can_ring ring;
     static mct_controller controller;
+    static mct_constants constants;
     mct_supervisor supervisor;
     mct_message why = {""};
     FUZZ_RULE(mct_scene_check(scene, &why) == MCT_OK, "a scene that was read passes the check: %s", why.text);
@@ -53,7 +54,7 @@ static void prepare(const mct_scene *scene)
     }
     mct_message_clear(&why);
     if (scene->controller != MCT_CONTROLLER_NONE) {
-        if (mct_controller_init(&controller, scene, &why) != MCT_OK) {
+        if (mct_controller_init(&controller, &constants, scene, &why) != MCT_OK) {
             check_message(&why);
         } else {
             const mct_reading reading = {{100, -100}, 0, 0};

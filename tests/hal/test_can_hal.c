@@ -22,6 +22,7 @@ static mct_can_ring bus;
 static mct_can_drive drive;
 static mct_can can;
 static mct_loop loop;
+static mct_plan plan;
 static mct_message why;
 
 void setUp(void)
@@ -62,7 +63,7 @@ static void start(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, prepare(), why.text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, open_hal(), why.text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(
-        MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why),
+        MCT_OK, mct_loop_init(&loop, &plan, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why),
         why.text);
 }
 
@@ -82,6 +83,7 @@ static void check_same_bits(int system, bool disturbed)
 {
     static mct_sim sim;
     static mct_loop reference;
+    static mct_plan reference_plan;
     scene = swing_up_scene(system);
     if (disturbed) {
         scene.noise = 1;
@@ -91,8 +93,8 @@ static void check_same_bits(int system, bool disturbed)
     }
     start();
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_sim_init(&sim, &scene, &why));
-    TEST_ASSERT_EQUAL_INT(
-        MCT_OK, mct_loop_init(&reference, &scene, mct_sim_hal(&sim), NULL, (mct_samples){NULL, 0}, &why));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&reference, &reference_plan, &scene, mct_sim_hal(&sim), NULL,
+                                                (mct_samples){NULL, 0}, &why));
     for (int k = 0; k < 30000; k++) {
         mct_loop_tick(&loop);
         mct_loop_tick(&reference);
@@ -437,8 +439,8 @@ static void test_a_recorded_bus_replays_the_same_commands(void)
         tape.ops.receive = tape_receive;
         can.transport.ops = &tape.ops;
         TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, open_hal(), why.text);
-        TEST_ASSERT_EQUAL_INT(
-            MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why));
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&loop, &plan, &scene, mct_can_hal(&can), NULL,
+                                                    (mct_samples){NULL, 0}, &why));
         for (int k = 0; k < TICKS; k++) {
             mct_loop_tick(&loop);
             applied[k] = loop.record.applied;
@@ -447,8 +449,8 @@ static void test_a_recorded_bus_replays_the_same_commands(void)
         const mct_can_transport recorded = mct_can_candump_transport(&log, tape.text, tape.length);
         TEST_ASSERT_EQUAL_INT(MCT_OK, mct_can_init(&can, &scene, recorded, true, &why));
         TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, open_hal(), why.text);
-        TEST_ASSERT_EQUAL_INT(
-            MCT_OK, mct_loop_init(&loop, &scene, mct_can_hal(&can), NULL, (mct_samples){NULL, 0}, &why));
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&loop, &plan, &scene, mct_can_hal(&can), NULL,
+                                                    (mct_samples){NULL, 0}, &why));
         for (int k = 0; k < TICKS; k++) {
             mct_loop_tick(&loop);
             TEST_ASSERT_TRUE_MESSAGE(loop.record.applied == applied[k], label);

@@ -40,6 +40,7 @@ static mct_can_drive drive;
 static mct_can_socket can_socket;
 static mct_can can;
 static mct_loop loop;
+static mct_plan plan;
 static mct_message why;
 
 static struct {
@@ -245,7 +246,8 @@ static outcome run(long at, int error, bool ever)
     result.status = hal.ops->open(hal.context, &why);
     result.calls_of_start = kernel.count;
     if (result.status == MCT_OK) {
-        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&loop, &scene, hal, NULL, (mct_samples){NULL, 0}, &why));
+        TEST_ASSERT_EQUAL_INT(MCT_OK,
+                              mct_loop_init(&loop, &plan, &scene, hal, NULL, (mct_samples){NULL, 0}, &why));
         for (int i = 0; i < TICKS; i++) {
             mct_loop_tick(&loop);
             const uint32_t age_us = loop.record.reading.age_us;

@@ -58,12 +58,16 @@ static void test_a_sleep_that_fails_is_said(void)
 static void test_a_loop_that_cannot_keep_its_time_has_zero_volts(void)
 {
     static mct_loop loop;
+    static mct_plan plan;
     static mct_sim sim;
+    mct_clock clock;
     mct_scene scene = swing_up_scene(1);
     scene.realtime = 1;
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_sim_init(&sim, &scene, NULL));
+    sim.clock = &clock;
     const mct_hal hal = mct_sim_hal(&sim);
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&loop, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL));
+    TEST_ASSERT_EQUAL_INT(MCT_OK,
+                          mct_loop_init(&loop, &plan, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL));
     hal.ops->open(hal.context, NULL);
     mct_loop_tick(&loop);
     TEST_ASSERT_TRUE(loop.record.applied != 0);

@@ -75,6 +75,7 @@ static void test_the_counter_sees_a_call(void)
 static void test_a_run_of_loop_and_sim_uses_no_heap(void)
 {
     static mct_loop loop;
+    static mct_plan plan;
     static mct_sim sim;
     static mct_ring ring;
     for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
@@ -85,8 +86,9 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void)
         memset(&ring, 0, sizeof ring);
         mct_status status = mct_sim_init(&sim, &scene, NULL);
         const mct_hal hal = mct_sim_hal(&sim);
-        status = status == MCT_OK ? mct_loop_init(&loop, &scene, hal, &ring, (mct_samples){NULL, 0}, NULL)
-                                  : status;
+        status = status == MCT_OK
+                     ? mct_loop_init(&loop, &plan, &scene, hal, &ring, (mct_samples){NULL, 0}, NULL)
+                     : status;
         status = status == MCT_OK ? hal.ops->open(hal.context, NULL) : status;
         for (int k = 0; k < 12000; k++) { /* past a swing-up, and past a full ring */
             mct_loop_tick(&loop);
@@ -105,6 +107,7 @@ static void test_a_run_of_loop_and_sim_uses_no_heap(void)
 static void test_a_run_over_a_bus_uses_no_heap(void)
 {
     static mct_loop loop;
+    static mct_plan plan;
     static mct_can can;
     static mct_can_drive drive;
     static mct_can_ring bus;
@@ -120,8 +123,9 @@ static void test_a_run_over_a_bus_uses_no_heap(void)
             status == MCT_OK ? mct_can_init(&can, &scene, mct_can_ring_end(&bus, 0), true, NULL) : status;
         const mct_hal hal = mct_can_hal(&can);
         status = status == MCT_OK ? hal.ops->open(hal.context, NULL) : status;
-        status =
-            status == MCT_OK ? mct_loop_init(&loop, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL) : status;
+        status = status == MCT_OK
+                     ? mct_loop_init(&loop, &plan, &scene, hal, NULL, (mct_samples){NULL, 0}, NULL)
+                     : status;
         for (int k = 0; k < 12000; k++) {
             mct_loop_tick(&loop);
         }

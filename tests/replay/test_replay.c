@@ -142,8 +142,8 @@ static void test_overrides_are_part_of_the_log(void)
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_scene_read(swing_up_scene, strlen(swing_up_scene), "scene", &override,
                                                  1, &run.scene, &why));
     TEST_ASSERT_EQUAL_INT(MCT_OK, mct_sim_init(&run.sim, &run.scene, &why));
-    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&run.loop, &run.scene, mct_sim_hal(&run.sim), &run.ring,
-                                                (mct_samples){NULL, 0}, &why));
+    TEST_ASSERT_EQUAL_INT(MCT_OK, mct_loop_init(&run.loop, &run.plan, &run.scene, mct_sim_hal(&run.sim),
+                                                &run.ring, (mct_samples){NULL, 0}, &why));
     snprintf(text, sizeof text, "%s#!set %s\n", swing_up_scene, override.assignment);
     logged_run_start(&run, &targets);
     for (int i = 0; i < 1000; i++) {

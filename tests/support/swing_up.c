@@ -22,13 +22,14 @@ mct_scene swing_up_scene(int system)
 
 swing_up run_swing_up(const mct_scene *scene, double duration, double settled)
 {
-    static mct_loop loop; /* large, and no test has threads */
+    static mct_loop loop;
+    static mct_plan plan; /* large, and no test has threads */
     static mct_sim sim;
     mct_message why = {""};
     TEST_ASSERT_EQUAL_INT_MESSAGE(MCT_OK, mct_sim_init(&sim, scene, &why), why.text);
     const mct_hal hal = mct_sim_hal(&sim);
     TEST_ASSERT_EQUAL_INT_MESSAGE(
-        MCT_OK, mct_loop_init(&loop, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
+        MCT_OK, mct_loop_init(&loop, &plan, scene, hal, NULL, (mct_samples){NULL, 0}, &why), why.text);
     TEST_ASSERT_EQUAL_INT(MCT_OK, hal.ops->open(hal.context, NULL));
     const int upright = sim.plant.system->actuation->upright_coordinate;
     swing_up result = {.upright_time = INFINITY, .reached_time = INFINITY};

@@ -16,6 +16,7 @@ typedef struct {
     mct_scene scene;
     mct_sim sim;
     mct_loop loop;
+    mct_plan plan;
     mct_ring ring;
     mct_telemetry telemetry;
     mct_status status;
@@ -43,8 +44,8 @@ static inline void logged_run_prepare(logged_run *run, const char *text, mct_sam
         run->status = mct_sim_init(&run->sim, &run->scene, &run->why);
     }
     if (run->status == MCT_OK) {
-        run->status =
-            mct_loop_init(&run->loop, &run->scene, mct_sim_hal(&run->sim), &run->ring, samples, &run->why);
+        run->status = mct_loop_init(&run->loop, &run->plan, &run->scene, mct_sim_hal(&run->sim), &run->ring,
+                                    samples, &run->why);
     }
     if (run->status != MCT_OK) {
         printf("%s\n", run->why.text);

@@ -28,6 +28,7 @@ static void fail(const char *name, const char *why)
 typedef struct {
     mct_sim sim, sim_start;
     mct_loop loop, loop_start; /* refers to itself and sim: copies come back to their place */
+    mct_plan plan;
     mct_ring ring;
     mct_mode mode;
 } ticking;
@@ -70,7 +71,8 @@ static void measure_ticks(const measure_effort *effort, int system, mct_mode mod
     scene.controller = MCT_CONTROLLER_SWING_UP_BALANCE;
     const mct_samples none = {NULL, 0};
     if (mct_sim_init(&self.sim, &scene, &why) != MCT_OK ||
-        mct_loop_init(&self.loop, &scene, mct_sim_hal(&self.sim), &self.ring, none, &why) != MCT_OK) {
+        mct_loop_init(&self.loop, &self.plan, &scene, mct_sim_hal(&self.sim), &self.ring, none, &why) !=
+            MCT_OK) {
         fail(mct_systems[system]->name, why.text);
     }
     self.loop.hal.ops->open(self.loop.hal.context, NULL);
@@ -92,6 +94,7 @@ typedef struct {
     mct_can_drive drive, drive_start;
     mct_can can, can_start;
     mct_loop loop, loop_start; /* all refer to one another: copies come back to their place */
+    mct_plan plan;
 } bus_ticking;
 
 static void restart_bus(void *context)
@@ -133,7 +136,7 @@ static void measure_bus_ticks(const measure_effort *effort, int system, int32_t 
     const mct_hal hal = mct_can_hal(&self.can);
     status = status == MCT_OK ? hal.ops->open(hal.context, &why) : status;
     status = status == MCT_OK
-                 ? mct_loop_init(&self.loop, &self.scene, hal, NULL, (mct_samples){NULL, 0}, &why)
+                 ? mct_loop_init(&self.loop, &self.plan, &self.scene, hal, NULL, (mct_samples){NULL, 0}, &why)
                  : status;
     if (status != MCT_OK) {
         fail(mct_systems[system]->name, why.text);

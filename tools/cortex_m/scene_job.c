@@ -47,11 +47,13 @@ static int closed_loop_inputs(const mct_scene *scene, job *self)
 {
     static mct_sim sim;
     static mct_loop loop;
+    static mct_plan plan;
     mct_message why;
     mct_scene simulated = *scene;
     simulated.realtime = 0;
     if (mct_sim_init(&sim, &simulated, &why) != MCT_OK ||
-        mct_loop_init(&loop, &simulated, mct_sim_hal(&sim), NULL, (mct_samples){NULL, 0}, &why) != MCT_OK ||
+        mct_loop_init(&loop, &plan, &simulated, mct_sim_hal(&sim), NULL, (mct_samples){NULL, 0}, &why) !=
+            MCT_OK ||
         loop.hal.ops->open(loop.hal.context, &why) != MCT_OK) {
         return say(EXIT_USAGE, "", why.text);
     }

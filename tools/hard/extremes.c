@@ -15,6 +15,7 @@
 typedef struct {
     mct_sim sim;
     mct_loop loop;
+    mct_plan plan;
 } closed_loop;
 
 /* A scene's loop in lockstep; false where the library refuses, with its reason in the result. */
@@ -23,7 +24,8 @@ static bool close_loop(closed_loop *self, const mct_scene *scene, hard_result *r
     mct_status status = mct_sim_init(&self->sim, scene, &result->why);
     if (status == MCT_OK) {
         const mct_hal hal = mct_sim_hal(&self->sim);
-        status = mct_loop_init(&self->loop, scene, hal, NULL, (mct_samples){NULL, 0}, &result->why);
+        status =
+            mct_loop_init(&self->loop, &self->plan, scene, hal, NULL, (mct_samples){NULL, 0}, &result->why);
         (void)hal.ops->open(hal.context, &result->why);
     }
     result->is_refused = status != MCT_OK;

@@ -29,10 +29,11 @@ static mct_status follow_loop(const mct_scene *scene, uint64_t ticks, double *in
     simulated.realtime = 0;
     mct_sim *sim = need_memory(malloc(sizeof *sim));
     mct_loop *loop = need_memory(malloc(sizeof *loop));
+    mct_plan *plan = need_memory(malloc(sizeof *plan));
     mct_status status = mct_sim_init(sim, &simulated, why);
     const mct_hal hal = mct_sim_hal(sim);
-    status =
-        status != MCT_OK ? status : mct_loop_init(loop, &simulated, hal, NULL, (mct_samples){NULL, 0}, why);
+    status = status != MCT_OK ? status
+                              : mct_loop_init(loop, plan, &simulated, hal, NULL, (mct_samples){NULL, 0}, why);
     status = status != MCT_OK ? status : hal.ops->open(hal.context, why);
     if (status == MCT_OK) {
         for (uint64_t i = 0; i < ticks; i++) {
@@ -52,6 +53,7 @@ static mct_status follow_loop(const mct_scene *scene, uint64_t ticks, double *in
         hal.ops->close(hal.context);
     }
     free(loop);
+    free(plan);
     free(sim);
     return status;
 }

@@ -163,6 +163,7 @@ typedef struct {
     mct_scene scene;
     mct_sim sim;
     mct_loop loop;
+    mct_plan plan;
     bool simulated;        /* else the plant was real, and the loop alone is compared */
     bool paced;            /* by a clock: how late a tick was is not in the scene */
     bool ended;            /* the log's last message has come */
@@ -493,7 +494,8 @@ static mct_status prepare(replay *self)
         return status;
     }
     /* The one sample of a csv input is set before each tick. */
-    status = mct_loop_init(&self->loop, &self->scene, hal, NULL, (mct_samples){&self->wanted, 1}, self->why);
+    status = mct_loop_init(&self->loop, &self->plan, &self->scene, hal, NULL, (mct_samples){&self->wanted, 1},
+                           self->why);
     return status != MCT_OK ? status : hal.ops->open(hal.context, self->why);
 }
 

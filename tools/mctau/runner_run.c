@@ -40,9 +40,11 @@ typedef struct {
     const mct_scene *scene;
     const run_options *options;
     mct_loop loop;
+    mct_plan plan;
     mct_ring ring;
     /* the hardware, one of them by the name that the scene gives */
     mct_sim sim;
+    mct_clock sim_clock;
     mct_watch watch; /* of the energy in sim */
     mct_can can;
     mct_can_socket socket;
@@ -384,10 +386,11 @@ static mct_status choose_hal(run *self, mct_hal *hal, mct_message *why)
     const char *const path = argument_of(scene->hal, "candump");
     if (strcmp(scene->hal, "sim") == 0) {
         self->realtime = scene->realtime != 0;
-        self->clock = &self->sim.clock;
+        self->clock = &self->sim_clock;
         self->mechanism = &self->sim.plant;
         *hal = mct_sim_hal(&self->sim);
         const mct_status status = mct_sim_init(&self->sim, scene, why);
+        self->sim.clock = &self->sim_clock;
         if (status == MCT_OK) {
             mct_watch_start(&self->watch, &self->sim.plant, scene);
         }
@@ -432,7 +435,7 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
     if (status != MCT_OK) {
         return status;
     }
-    status = mct_loop_init(&self->loop, scene, hal, wants_telemetry(self) ? &self->ring : NULL,
+    status = mct_loop_init(&self->loop, &self->plan, scene, hal, wants_telemetry(self) ? &self->ring : NULL,
                            (mct_samples){options->samples, options->sample_count}, why);
     self->plant = hal.ops->plant(hal.context);
     self->limit = self->loop.supervisor.limit;
