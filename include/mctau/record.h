@@ -10,7 +10,8 @@
 
 /**
  * Everything of one tick: all inputs, so that it can be replayed, and all results, so that a replay can be
- * checked.
+ * checked. Its parts have the same sizes on every machine, so the bytes of one can be read by another
+ * (hal/records.h).
  */
 typedef struct {
     uint64_t tick;
@@ -19,11 +20,11 @@ typedef struct {
     mct_real estimate[2 * MCT_MAX_ENCODERS]; /**< zero in open loop */
     mct_real wanted;                         /**< input asked for [V] */
     mct_real applied;                        /**< input let through [V] */
-    mct_mode mode;
-    uint32_t faults;  /**< latched, bit (1 << mct_fault) */
-    bool rearmed;     /**< faults were cleared before this tick */
-    uint32_t late_us; /**< how late the tick began */
-    uint64_t dropped; /**< records lost so far because the ring was full */
+    int32_t mode;                            /**< mct_mode */
+    uint32_t faults;                         /**< latched, bit (1 << mct_fault) */
+    bool rearmed;                            /**< faults were cleared before this tick */
+    uint32_t late_us;                        /**< how late the tick began */
+    uint64_t dropped;                        /**< records lost so far because the ring was full */
 } mct_record;
 
 #define MCT_RING_SIZE 4096 /**< records, a power of two: 4 s at 1 kHz */

@@ -6,6 +6,7 @@
 #include "mctau/matrix.h"
 #include "mctau/riccati.h"
 #include "mctau/sincos.h"
+#include "swing_up.h"
 
 #define LEARNING  MCT_R(0.5) /* fraction of a missed energy by which the next approach aims differently */
 #define MAX_MODEL (2 * MCT_MAX_ENCODERS)
@@ -229,7 +230,7 @@ static void learn_gravity(mct_controller *controller)
 }
 
 /* The wheel's reaction does the work -torque arm_rate on the arm. */
-static mct_real swing_up_reaction_wheel(mct_controller *controller)
+mct_real mct_reaction_wheel_swing_up(mct_controller *controller)
 {
     const mct_reaction_wheel_constants *k = &controller->constants->reaction_wheel;
     learn_gravity(controller);
@@ -258,7 +259,7 @@ static mct_real kept_on_track(const mct_controller *controller, mct_real positio
  * The cart's acceleration a does the work -m l cos(th) thd a on the pole; the voltage that gives it follows
  * from the model.
  */
-static mct_real swing_up_cart_pole(mct_controller *controller)
+mct_real mct_cart_pole_swing_up(mct_controller *controller)
 {
     const mct_cart_pole_constants *k = &controller->constants->cart_pole;
     const mct_real *x = controller->observer.x;
@@ -285,8 +286,8 @@ static const struct {
     const mct_system *system;
     mct_real (*swing_up)(mct_controller *controller);
     bool learns_gravity;
-} laws[] = {{&mct_cart_pole, swing_up_cart_pole, false},
-            {&mct_reaction_wheel, swing_up_reaction_wheel, true}};
+} laws[] = {{&mct_cart_pole, mct_cart_pole_swing_up, false},
+            {&mct_reaction_wheel, mct_reaction_wheel_swing_up, true}};
 
 mct_status mct_controller_init(mct_controller *controller, mct_constants *constants, const mct_scene *scene,
                                mct_message *why)

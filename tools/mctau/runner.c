@@ -7,6 +7,7 @@
 #include "mctau/judge.h"
 #include "mctau/plant.h"
 #include "runner_advise.h"
+#include "runner_compile.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
 #include "runner_ledger.h"
@@ -140,6 +141,7 @@ const mct_runner MCT_RUNNER = {
     .loop = runner_loop,
     .depart = runner_depart,
     .time_scale = runner_time_scale,
+    .compile = runner_compile,
     .hard_case_after = hard_case_after,
     .hard_run_case = hard_run_case,
     .hard_judge = hard_judge,

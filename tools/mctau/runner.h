@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "csv_output.h"
 #include "hal/hal.h"
 #include "hal/socketcan/can.h"
 #include "hal/socketcan/drive.h"
@@ -243,6 +244,9 @@ typedef struct {
      * else by how the accelerations that it brings respond to the state. NaN where it has none.
      */
     double (*time_scale)(const mct_scene *with, const mct_scene *without, const course *along);
+    /* The scene's structs as C text: see runner_compile.h. */
+    mct_status (*compile)(const mct_scene *scene, const run_options *options, csv_output *out,
+                          mct_message *why);
     /* Hard cases: see tools/hard/hard.h. */
     const hard_case *(*hard_case_after)(int number);
     void (*hard_run_case)(const hard_case *about, bool is_full, hard_result results[HARD_METHOD_COUNT]);

@@ -321,7 +321,7 @@ static void compare_tick(replay *self)
     compare_reals(self, "estimate", recorded->estimates, recorded->estimate, record->estimate);
     compare_real(self, "wanted", "", recorded->wanted, record->wanted);
     compare_real(self, "applied", "", recorded->applied, record->applied);
-    compare_integer(self, "mode", "", recorded->mode, (int32_t)record->mode);
+    compare_integer(self, "mode", "", recorded->mode, record->mode);
     compare_integer(self, "faults", "", recorded->faults, (int32_t)record->faults);
     compare_integer(self, "dropped", "", recorded->dropped, 0); /* or there would be a gap */
     compare_integer(self, "rearmed", "", recorded->rearmed, record->rearmed);
