@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "start.h"
+
 enum {
     SYS_OPEN = 0x01,
     SYS_CLOSE = 0x02,
@@ -79,4 +81,12 @@ void mct_semihosting_exit(int code)
     for (;;) {
         (void)call(SYS_EXIT_EXTENDED, block);
     }
+}
+
+void mct_image_end(const char *said, int code)
+{
+    if (said != NULL) {
+        mct_semihosting_write(said);
+    }
+    mct_semihosting_exit(code);
 }

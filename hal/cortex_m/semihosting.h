@@ -12,9 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Exit code after a fault; main's own codes should differ. */
-#define MCT_EXIT_FAULT 70
-
 /** Writes a text to the host's console. */
 void mct_semihosting_write(const char *text);
 

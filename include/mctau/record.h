@@ -31,12 +31,13 @@ typedef struct {
 
 /**
  * A queue from one producer (the loop) to one consumer (telemetry). Neither ever waits; a push to a full ring
- * is counted and lost. Zero-initialise before use.
+ * is counted and lost. Zero-initialise before use. The counters are words that any processor reads and writes whole;
+ * they may wrap, as the size is a power of two.
  */
 typedef struct {
-    uint64_t head;    /**< records pushed; written by the producer only */
-    uint64_t dropped; /**< pushes refused; written by the producer only */
-    uint64_t tail;    /**< records taken; written by the consumer only */
+    size_t head;    /**< records pushed; written by the producer only */
+    size_t dropped; /**< pushes refused; written by the producer only */
+    size_t tail;    /**< records taken; written by the consumer only */
     mct_record records[MCT_RING_SIZE];
 } mct_ring;
 
