@@ -23,7 +23,7 @@ void mct_clock_start(mct_clock *clock, double period)
     clock->has_priority = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
     clock->period_ns = period * 1e9;
     clock->start_ns = now_ns();
-    clock->woke_ns = clock->start_ns;
+    clock->woke = clock->start_ns;
     clock->tick = 1;
 }
 
@@ -42,7 +42,7 @@ mct_status mct_clock_wait(mct_clock *clock)
 {
     mct_timing *timing = &clock->timing;
     const int64_t done = now_ns();
-    mct_histogram_add(&timing->work, microseconds(done - clock->woke_ns));
+    mct_histogram_add(&timing->work, microseconds(done - clock->woke));
     const int64_t late_ns = done - deadline_ns(clock);
     if (late_ns > 0) {
         const uint64_t missed = (uint64_t)((double)late_ns / clock->period_ns) + 1;
@@ -55,8 +55,8 @@ mct_status mct_clock_wait(mct_clock *clock)
     for (int tries = 0; status == EINTR && tries < 100; tries++) {
         status = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL);
     }
-    clock->woke_ns = now_ns();
-    mct_histogram_add(&timing->lateness, microseconds(clock->woke_ns - due_ns));
+    clock->woke = now_ns();
+    mct_histogram_add(&timing->lateness, microseconds(clock->woke - due_ns));
     clock->tick++;
     return status == 0 ? MCT_OK : MCT_ERROR_IO;
 }

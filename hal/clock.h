@@ -1,6 +1,7 @@
 /**
  * @file clock.h
- * A periodic clock on CLOCK_MONOTONIC with absolute deadlines, and how well they were met.
+ * A periodic clock with absolute deadlines, and how well they were met: by CLOCK_MONOTONIC (clock.c), or by SysTick
+ * (cortex_m/systick.c), whose period is that of the ticks.
  */
 #ifndef MCTAU_HAL_CLOCK_H
 #define MCTAU_HAL_CLOCK_H
@@ -13,8 +14,8 @@
 typedef struct {
     double period_ns;
     int64_t start_ns;
-    uint64_t tick;     /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up */
-    int64_t woke_ns;   /**< when the present tick began */
+    uint64_t tick; /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up; SysTick: its number */
+    int64_t woke;  /**< when the present tick began [ns; SysTick: cycles] */
     bool has_priority; /**< SCHED_FIFO was granted */
     bool has_memory;   /**< mlockall was granted */
     mct_timing timing;

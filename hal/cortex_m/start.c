@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "semihosting.h"
+#include "start.h"
 
 int main(void);
 void Reset_Handler(void);
@@ -25,15 +25,13 @@ extern const uint8_t mct_data_image[];
 /* Bus, usage and memory faults are not enabled of their own and come here, too. */
 __attribute__((weak)) void HardFault_Handler(void)
 {
-    mct_semihosting_write("hard fault\n");
-    mct_semihosting_exit(MCT_EXIT_FAULT);
+    mct_image_end("hard fault\n", MCT_EXIT_FAULT);
 }
 
 /* For those that nothing has enabled. */
 static void unexpected(void)
 {
-    mct_semihosting_write("an interrupt without a handler\n");
-    mct_semihosting_exit(MCT_EXIT_FAULT);
+    mct_image_end("an interrupt without a handler\n", MCT_EXIT_FAULT);
 }
 
 #define OR_UNEXPECTED __attribute__((weak, alias("unexpected")))
@@ -59,7 +57,7 @@ __attribute__((noinline, noreturn)) static void start(void)
 {
     memcpy(mct_data_begin, mct_data_image, (size_t)(mct_data_end - mct_data_begin));
     memset(mct_bss_begin, 0, (size_t)(mct_bss_end - mct_bss_begin));
-    mct_semihosting_exit(main());
+    mct_image_end(NULL, main());
 }
 
 /* No floating-point instruction may come before the FPU is on, so all else is in another function. */

@@ -199,7 +199,7 @@ static void send_tick(mct_telemetry *self, const mct_record *record)
         .estimate = estimate,
         .wanted = (double)record->wanted,
         .applied = (double)record->applied,
-        .mode = (int32_t)record->mode,
+        .mode = record->mode,
         .faults = (int32_t)record->faults,
         .rearmed = record->rearmed,
         .late_us = record->late_us,

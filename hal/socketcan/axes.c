@@ -146,6 +146,7 @@ mct_status mct_can_axes_init(mct_can_axes *axes, const mct_scene *scene, mct_mes
     for (int i = 0; i < axes->count; i++) {
         axes->axes[i].protocol = axes->protocol;
         axes->axes[i].scene = scene;
+        axes->axes[i].watchdog_ms = mct_can_watchdog_ms(scene->can_watchdog);
     }
     return status;
 }

@@ -139,8 +139,7 @@ static uint32_t age_of(mct_can *self, int coordinate, const mct_can_encoder *enc
 
 static void read_encoders(mct_can *self, mct_reading *reading)
 {
-    const int n = mct_systems[self->scene->system]->coordinate_count;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < self->encoder_count; i++) {
         mct_can_axis *axis;
         const mct_can_encoder *encoder = mct_can_encoder_of(&self->axes, i, &axis);
         const uint32_t news = encoder->updates - self->updates[i];
@@ -242,8 +241,7 @@ static mct_status can_write(void *context, mct_real volts)
 /* Whether every encoder has said something since the last command. */
 static bool is_answered(mct_can *self)
 {
-    const int n = mct_systems[self->scene->system]->coordinate_count;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < self->encoder_count; i++) {
         mct_can_axis *axis;
         const mct_can_encoder *encoder = mct_can_encoder_of(&self->axes, i, &axis);
         const bool answers = !self->axes.protocol->has_echo || axis != &self->axes.axes[0] ||
@@ -372,6 +370,7 @@ mct_status mct_can_init(mct_can *self, const mct_scene *scene, mct_can_transport
     self->scene = scene;
     self->lockstep = lockstep;
     self->dt = scene->dt;
+    self->encoder_count = mct_systems[scene->system]->coordinate_count;
     self->tick_us = scene->dt < 1e-6 ? 1 : (uint32_t)(scene->dt * 1e6 + 0.5);
     const mct_status status = mct_can_axes_init(&self->axes, scene, why);
     if (status != MCT_OK) {
@@ -627,12 +626,12 @@ static mct_status start(mct_can *self, mct_message *why)
         !check_watchdog(self, why)) {
         return MCT_ERROR_IO;
     }
-    self->report.bus_voltage = self->axes.axes[0].bus_voltage;
+    self->report.bus_voltage = mct_can_bus_voltage(&self->axes.axes[0]);
     command(self, 0);
     for (int i = 0; i < self->axes.count; i++) {
         self->restarts[i] = self->axes.axes[i].restarts;
     }
-    for (int i = 0; i < mct_systems[self->scene->system]->coordinate_count; i++) {
+    for (int i = 0; i < self->encoder_count; i++) {
         mct_can_axis *axis;
         self->updates[i] =
             mct_can_encoder_of(&self->axes, i, &axis)->updates - 1; /* the newest is yet to be read */

@@ -48,6 +48,7 @@ typedef struct {
     bool lockstep;
     double dt;
     uint32_t tick_us;
+    int encoder_count;
     mct_can_axes axes;
     /* what was heard */
     mct_reading reading;                   /**< last given */

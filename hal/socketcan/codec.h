@@ -6,6 +6,7 @@
 #define MCTAU_HAL_SOCKETCAN_CODEC_H
 
 #include <float.h>
+#include <string.h>
 
 #include "hal/socketcan/protocol.h"
 
@@ -35,6 +36,14 @@ bool mct_can_was_silent(const mct_can_encoder *encoder, const mct_can_frame *fra
 static inline double mct_can_magnitude(double value)
 {
     return value < 0 ? -value : value;
+}
+
+/** The sign alone: without arithmetic in double, which many a float target has in software. */
+static inline bool mct_can_is_negative(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits >> 63 != 0;
 }
 
 static inline bool mct_can_finite(double value)

@@ -11,7 +11,7 @@
  *
  * Watchdog. Each command says how long it holds; 0: until the next one.
  *
- * A float target computes no double in each tick, but for a sign and one conversion of the settings.
+ * What the host's end does in a tick has no arithmetic in double.
  */
 #include <string.h>
 
@@ -24,7 +24,6 @@ enum { REASON_HOST = 1, REASON_BUTTON = 2 };
 
 #define ALL_AXES         (MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER | MCT_CAN_OF_SPARE)
 #define SHORTEST_TIMEOUT 5
-#define LONGEST_TIMEOUT  255
 #define ORDERED_US       30000 /* less than half of what the drive's clock of 16 bits can tell apart */
 #define LARGEST_MV       INT32_MAX
 
@@ -105,7 +104,7 @@ static mct_can_verdict hear_feedback(mct_can_axis *axis, int place, const mct_ca
         hear_state(axis, &feedback);
     }
     const uint32_t counts = (uint32_t)feedback.counts;
-    encoder->counts = (int32_t)(encoder->counts_per_turn < 0 ? 0 - counts : counts);
+    encoder->counts = (int32_t)(mct_can_is_negative(encoder->counts_per_turn) ? 0 - counts : counts);
     encoder->updates++;
     encoder->time_us = frame->time_us;
     encoder->echo = feedback.echo;
@@ -118,7 +117,7 @@ static mct_can_verdict hear_status(mct_can_axis *axis, const mct_can_frame *fram
 {
     struct mct_dbc_native_drive_status_t status;
     mct_dbc_native_drive_status_unpack(&status, frame->data, frame->length);
-    axis->bus_voltage = status.bus_voltage * 0.01;
+    axis->bus_10mv = status.bus_voltage;
     axis->error = status.fault;
     if (status.fault != 0) {
         axis->state = MCT_CAN_DRIVE_FAULTY;
@@ -153,18 +152,21 @@ static mct_can_verdict hear(mct_can_axis *axis, const mct_can_frame *frame)
     }
 }
 
+uint8_t mct_can_watchdog_ms(double seconds)
+{
+    return (uint8_t)(seconds > 0 ? mct_can_nearest(seconds * 1000, SHORTEST_TIMEOUT, UINT8_MAX) : 0);
+}
+
 static void fill_command(mct_can_axis *axis, int32_t millivolts, uint8_t mode, bool enable,
                          mct_can_frame *frame)
 {
-    const mct_real wanted = (mct_real)axis->scene->can_watchdog * MCT_R(1000);
-    const int32_t timeout = mct_can_nearest_real(wanted, LONGEST_TIMEOUT);
     axis->sequence++;
     const struct mct_dbc_native_drive_cmd_t command = {
         .voltage = axis->motor.inverted ? -millivolts : millivolts,
         .sequence = axis->sequence,
         .mode = mode,
         .enable = enable,
-        .timeout = (uint8_t)(timeout < SHORTEST_TIMEOUT && wanted > 0 ? SHORTEST_TIMEOUT : timeout),
+        .timeout = axis->watchdog_ms,
     };
     mct_can_begin(&mct_can_native, COMMAND, axis->node, 8, frame);
     mct_dbc_native_drive_cmd_pack(frame->data, &command, sizeof frame->data);

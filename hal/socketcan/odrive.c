@@ -244,7 +244,7 @@ static mct_can_verdict hear_count(mct_can_axis *axis, const mct_can_frame *frame
         encoder->fastest = speed > 0.5 * encoder->fastest ? speed : 0.5 * encoder->fastest;
     }
     const uint32_t counts = (uint32_t)count.shadow_count;
-    encoder->counts = (int32_t)(encoder->counts_per_turn < 0 ? 0 - counts : counts);
+    encoder->counts = (int32_t)(mct_can_is_negative(encoder->counts_per_turn) ? 0 - counts : counts);
     return note_feedback(encoder, frame);
 }
 

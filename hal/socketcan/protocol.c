@@ -16,6 +16,11 @@ const mct_can_protocol *mct_can_protocol_of(const mct_scene *scene)
     return is_0_5 ? &mct_can_odrive_0_5 : mct_can_protocols[scene->can_protocol];
 }
 
+double mct_can_bus_voltage(const mct_can_axis *axis)
+{
+    return axis->bus_10mv > 0 ? axis->bus_10mv * 0.01 : axis->bus_voltage;
+}
+
 /* Start, identifier, control, checksum of 15 bits, acknowledgement, end of 7 bits, gap of 3. */
 int mct_can_nominal_bits(bool extended, int length)
 {

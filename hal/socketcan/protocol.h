@@ -78,7 +78,8 @@ typedef struct {
     const struct mct_can_protocol *protocol;
     const mct_scene *scene; /**< its [can] settings; must outlive the axis */
     uint8_t node;
-    uint32_t roles; /**< MCT_CAN_OF_... */
+    uint32_t roles;      /**< MCT_CAN_OF_... */
+    uint8_t watchdog_ms; /**< native: told with each command, mct_can_watchdog_ms */
     mct_can_motor motor;
     mct_can_encoder encoders[MCT_CAN_ENCODERS]; /**< its own, and a second one */
 
@@ -90,7 +91,8 @@ typedef struct {
     bool estopped;             /**< the drive says that an emergency stop holds it */
     uint32_t restarts;         /**< counts what looked like a restart of the drive */
     uint8_t axis_state;        /**< odrive: of its newest heartbeat; kept while it is asked to get ready */
-    double bus_voltage;        /**< as the drive measures it [V]; 0: not heard */
+    double bus_voltage;        /**< vesc, odrive: see mct_can_bus_voltage */
+    uint16_t bus_10mv;         /**< native: likewise, as told [10 mV] */
     double rate;               /**< of the drive's encoder, as it says [turns/s]; 0: not heard */
     int64_t rate_us;           /**< odrive: when that came */
     double change;             /**< vesc, odrive: of the position, from message to message [turns] */
@@ -209,6 +211,12 @@ extern const mct_can_protocol mct_can_native;
 extern const mct_can_protocol mct_can_vesc;
 extern const mct_can_protocol mct_can_odrive;     /**< firmware 0.6 */
 extern const mct_can_protocol mct_can_odrive_0_5; /**< the same but for what its positions come from */
+
+/** The supply as the drive measures it [V]; 0: not heard. */
+double mct_can_bus_voltage(const mct_can_axis *axis);
+
+/** can.watchdog as a native drive is told it: 5 to 255 ms, or 0 for none. */
+uint8_t mct_can_watchdog_ms(double seconds);
 
 /** Longest and nominal length of a frame on the wire, stuffing and the gap behind it included [bits]. */
 int mct_can_nominal_bits(bool extended, int length);

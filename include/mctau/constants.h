@@ -20,6 +20,9 @@
 #include "mctau/solid_pendulum.h"
 #include "mctau/spring_pendulum.h"
 
+/** Length of mct_constants, as the words that `mctau compile` writes. */
+#define MCT_CONSTANTS_WORDS (MCT_REAL_IS_FLOAT ? 200 : 400)
+
 typedef union {
     mct_cart_pole_constants cart_pole;
     mct_reaction_wheel_constants reaction_wheel;
@@ -35,6 +38,7 @@ typedef union {
     mct_block_constants block;
     mct_linked_particles_constants linked_particles;
     mct_falling_sphere_constants falling_sphere;
+    uint32_t words[MCT_CONSTANTS_WORDS];
 } mct_constants;
 
 #endif

@@ -10,7 +10,8 @@
 
 /**
  * Everything of one tick: all inputs, so that it can be replayed, and all results, so that a replay can be
- * checked.
+ * checked. Its parts have the same sizes on every machine, so the bytes of one can be read by another
+ * (hal/records.h).
  */
 typedef struct {
     uint64_t tick;
@@ -19,23 +20,24 @@ typedef struct {
     mct_real estimate[2 * MCT_MAX_ENCODERS]; /**< zero in open loop */
     mct_real wanted;                         /**< input asked for [V] */
     mct_real applied;                        /**< input let through [V] */
-    mct_mode mode;
-    uint32_t faults;  /**< latched, bit (1 << mct_fault) */
-    bool rearmed;     /**< faults were cleared before this tick */
-    uint32_t late_us; /**< how late the tick began */
-    uint64_t dropped; /**< records lost so far because the ring was full */
+    int32_t mode;                            /**< mct_mode */
+    uint32_t faults;                         /**< latched, bit (1 << mct_fault) */
+    bool rearmed;                            /**< faults were cleared before this tick */
+    uint32_t late_us;                        /**< how late the tick began */
+    uint64_t dropped;                        /**< records lost so far because the ring was full */
 } mct_record;
 
 #define MCT_RING_SIZE 4096 /**< records, a power of two: 4 s at 1 kHz */
 
 /**
  * A queue from one producer (the loop) to one consumer (telemetry). Neither ever waits; a push to a full ring
- * is counted and lost. Zero-initialise before use.
+ * is counted and lost. Zero-initialise before use. The counters are words that any processor reads and writes whole;
+ * they may wrap, as the size is a power of two.
  */
 typedef struct {
-    uint64_t head;    /**< records pushed; written by the producer only */
-    uint64_t dropped; /**< pushes refused; written by the producer only */
-    uint64_t tail;    /**< records taken; written by the consumer only */
+    size_t head;    /**< records pushed; written by the producer only */
+    size_t dropped; /**< pushes refused; written by the producer only */
+    size_t tail;    /**< records taken; written by the consumer only */
     mct_record records[MCT_RING_SIZE];
 } mct_ring;
 

@@ -115,6 +115,12 @@ typedef struct {
  */
 typedef void (*mct_kernel)(const void *constants, mct_state *state, mct_real input, int32_t steps);
 
+/** A kernel and the symbol that a program finds it by, mct_SYSTEM_STEPPER_SET. */
+typedef struct {
+    mct_kernel function;
+    const char *name;
+} mct_named_kernel;
+
 #define MCT_MOTION_STATES 5  /**< of a system whose motion can be had as a series */
 #define MCT_MOTION_TERMS  13 /**< of order 13 in coordinates, 12 in the other states */
 
@@ -178,9 +184,6 @@ typedef struct {
      */
     void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
                        mct_real input, mct_real *a);
-    /** The input under which, by accelerate, the driven coordinate has an acceleration; NULL where no law asks. */
-    mct_real (*input_for)(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
-                          mct_real acceleration);
     void (*linearise)(const struct mct_scene *scene, mct_linear_model *model);
     /** The motor among the constants. */
     const mct_motor *(*motor)(const void *constants);
@@ -230,7 +233,7 @@ typedef struct mct_system {
     void (*place)(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
                   mct_hyperdual (*position)[3]);
     /** Kernels by stepper and kernel mask; NULL where the pair does not fit. */
-    mct_kernel (*kernel)(int stepper, uint32_t effects);
+    const mct_named_kernel *(*kernel)(int stepper, uint32_t effects);
     /** Writes the motion over one step of `taylor12`; NULL where its series is not at hand. For scene.stride. */
     void (*motion)(const void *constants, uint32_t effects, const mct_state *state, mct_real input,
                    mct_motion *motion);

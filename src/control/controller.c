@@ -5,6 +5,7 @@
 #include "../systems/systems.h"
 #include "mctau/matrix.h"
 #include "mctau/riccati.h"
+#include "swing_up.h"
 
 #define LEARNING  MCT_R(0.5) /* fraction of a missed energy by which the next approach aims differently */
 #define MAX_MODEL (2 * MCT_MAX_ENCODERS)
@@ -227,7 +228,7 @@ static void learn_gravity(mct_controller *controller)
 }
 
 /* The wheel's reaction does the work -torque arm_rate on the arm. */
-static mct_real swing_up_reaction_wheel(mct_controller *controller)
+mct_real mct_reaction_wheel_swing_up(mct_controller *controller)
 {
     const mct_reaction_wheel_constants *k = &controller->constants->reaction_wheel;
     learn_gravity(controller);
@@ -256,7 +257,7 @@ static mct_real kept_on_track(const mct_controller *controller, mct_real positio
  * The cart's acceleration a does the work -m l cos(th) thd a on the pole; the voltage that gives it follows
  * from the model.
  */
-static mct_real swing_up_cart_pole(mct_controller *controller)
+mct_real mct_cart_pole_swing_up(mct_controller *controller)
 {
     const mct_cart_pole_constants *k = &controller->constants->cart_pole;
     const mct_real *x = controller->observer.x;
@@ -267,7 +268,7 @@ static mct_real swing_up_cart_pole(mct_controller *controller)
         kept_on_track(controller, x[0], x[2],
                       controller->swing_acceleration * pump - controller->track_stiffness * x[0] -
                           controller->track_damping * x[2]);
-    return controller->system->actuation->input_for(controller->constants, controller->effects, x, s, c, wanted);
+    return mct_cart_pole_input_for(k, controller->effects, x, s, c, wanted);
 }
 
 /*
@@ -278,8 +279,8 @@ static const struct {
     const mct_system *system;
     mct_real (*swing_up)(mct_controller *controller);
     bool learns_gravity;
-} laws[] = {{&mct_cart_pole, swing_up_cart_pole, false},
-            {&mct_reaction_wheel, swing_up_reaction_wheel, true}};
+} laws[] = {{&mct_cart_pole, mct_cart_pole_swing_up, false},
+            {&mct_reaction_wheel, mct_reaction_wheel_swing_up, true}};
 
 mct_status mct_controller_init(mct_controller *controller, mct_constants *constants, const mct_scene *scene,
                                mct_message *why)

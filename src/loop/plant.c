@@ -53,7 +53,7 @@ static int32_t take_turns(mct_state *state, int i)
     const mct_real sign = x < 0 ? -1 : 1;
     const int32_t turns = (int32_t)(sign * x / turn);
     mct_real left = sign * x;
-    for (int bit = LARGEST; bit >= 0; bit--) {
+    for (int bit = turns == 1 ? 0 : LARGEST; bit >= 0; bit--) { /* nearly always it is one */
         if (turns & (1 << bit)) {
             left -= (mct_real)(1 << bit) * turn;
         }
@@ -119,14 +119,15 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
     memset(plant, 0, sizeof *plant);
     plant->system = mct_systems[scene->system];
     plant->effects = mct_scene_effects(scene);
-    plant->kernel = plant->system->kernel(scene->stepper, plant->effects);
-    if (plant->kernel == NULL) {
+    const mct_named_kernel *kernel = plant->system->kernel(scene->stepper, plant->effects);
+    if (kernel == NULL) {
         mct_message_add(why, "scene.stepper: found ");
         mct_message_add(why, mct_steppers[scene->stepper].name);
         mct_message_add(why, ", which does not suit ");
         mct_message_add(why, plant->system->name);
         return MCT_ERROR_UNSUITED;
     }
+    plant->kernel = kernel->function;
     if (scene->stride > 1 && (plant->system->motion == NULL || (plant->effects & MCT_COULOMB_EXACT))) {
         mct_message_add(why, "scene.stride: found a step over several ticks, for which ");
         mct_message_add(why, plant->system->name);

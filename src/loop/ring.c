@@ -1,12 +1,11 @@
 #include "mctau/record.h"
 
-/* The counters are 64 bits wide and never wrap; the slot is the counter modulo the size. */
-static uint64_t load(const uint64_t *counter)
+static size_t load(const size_t *counter)
 {
     return __atomic_load_n(counter, __ATOMIC_ACQUIRE);
 }
 
-static void store(uint64_t *counter, uint64_t value)
+static void store(size_t *counter, size_t value)
 {
     __atomic_store_n(counter, value, __ATOMIC_RELEASE);
 }
@@ -22,7 +21,7 @@ bool mct_ring_push(mct_ring *ring, const mct_record *record)
         store(&ring->dropped, ring->dropped + 1);
         return false;
     }
-    const uint64_t head = ring->head;
+    const size_t head = ring->head;
     ring->records[head % MCT_RING_SIZE] = *record;
     store(&ring->head, head + 1);
     return true;
@@ -30,7 +29,7 @@ bool mct_ring_push(mct_ring *ring, const mct_record *record)
 
 const mct_record *mct_ring_peek(const mct_ring *ring)
 {
-    const uint64_t tail = ring->tail;
+    const size_t tail = ring->tail;
     return load(&ring->head) == tail ? NULL : &ring->records[tail % MCT_RING_SIZE];
 }
 

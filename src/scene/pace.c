@@ -267,16 +267,17 @@ void mct_pace_find(const mct_scene *scene, mct_pace *pace)
     self.scene = scene;
     self.system = mct_systems[scene->system];
     self.effects = mct_scene_effects(scene);
-    /* Dry friction is an impulse that no step is too long for. A series may need it, where it finds the kinks of drag. */
-    self.kernel =
-        self.system->kernel(scene->stepper, self.effects & MCT_KERNEL_EFFECTS & ~(uint32_t)MCT_COULOMB);
-    if (self.kernel == NULL) {
-        self.kernel = self.system->kernel(scene->stepper, self.effects & MCT_KERNEL_EFFECTS);
-    }
     self.step = pace->longest = mct_scene_step(scene);
     if (self.system->is_process) {
         return;
     }
+    /* Dry friction is an impulse that no step is too long for. A series may need it, where it finds the kinks of drag. */
+    const uint32_t effects = self.effects & MCT_KERNEL_EFFECTS;
+    const mct_named_kernel *kernel = self.system->kernel(scene->stepper, effects & ~(uint32_t)MCT_COULOMB);
+    if (kernel == NULL) {
+        kernel = self.system->kernel(scene->stepper, effects);
+    }
+    self.kernel = kernel->function;
     self.coordinates = mct_coordinate_count(scene);
     self.rate = mct_rate_index(self.system);
     self.states = mct_state_count(scene);

@@ -17,6 +17,7 @@
 #include "mctau/ball_joint.h"
 
 #include "../steppers/rk4_plain.h"
+#define MCT_SYSTEM ball_joint
 #define MCT_ALWAYS MCT_ROTATION
 #include "kernels.h"
 #include "mctau/scene.h"
@@ -323,9 +324,9 @@ MCT_KERNELS_2(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, in_space(rk4, k, 
 MCT_KERNELS_2(split3, k->rotor.step.remainder, N, SWITCHES, in_space(split3, k, effects, 0, x, dx))
 MCT_TAYLOR_KERNELS_2(k->rotor.step.remainder, N, 2, MCT_GRAVITY, MCT_VISCOUS)
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,     [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,     [MCT_STEPPER_RK4] = rk4_kernels,
         [MCT_STEPPER_SPLIT3] = split3_kernels, MCT_TAYLOR_ROWS,

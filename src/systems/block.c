@@ -26,6 +26,7 @@
 #include "../steppers/rk4.h"
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
+#define MCT_SYSTEM block
 #include "kernels.h"
 #include "mctau/matrix.h"
 #include "mctau/message.h"
@@ -441,9 +442,9 @@ MCT_SMOOTH_KERNELS_4(rk4, k->step.sixth_remainder, 1, 5, SWITCHES, MCT_COULOMB_M
                      (runge_kutta(k, effects, x, u, dx), finish(k, effects, x, dx)))
 MCT_DRY_KERNELS_3(expo, k->step.remainder, 1, SWITCHES, exact(k, effects, x, u, dx))
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
         [MCT_STEPPER_EXPO] = expo_kernels,

@@ -27,6 +27,7 @@
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
 #include "../steppers/taylor.h"
+#define MCT_SYSTEM cart_pole
 #include "kernels.h"
 #include "mctau/scene.h"
 #include "mctau/sincos.h"
@@ -442,8 +443,8 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
     mct_taylor_dry(series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
 }
 
-static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
-                   mct_motion *out)
+void mct_cart_pole_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                          mct_motion *out)
 {
     const constants_t *k = constants;
     mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
@@ -567,19 +568,19 @@ MCT_INLINE void accelerate_at(const constants_t *k, uint32_t effects, const mct_
           k->weight_moment * s - pole_damping * thd, a);
 }
 
-static void accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
-                       mct_real u, mct_real *a)
+void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
+                              mct_real u, mct_real *a)
 {
     accelerate_at(constants, effects, x, s, c, u, a);
 }
 
 /* The cart's acceleration grows by as much with each unit of input. */
-static mct_real input_for(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
-                          mct_real acceleration)
+mct_real mct_cart_pole_input_for(const mct_cart_pole_constants *k, uint32_t effects, const mct_real *x, mct_real s,
+                                 mct_real c, mct_real acceleration)
 {
     mct_real without[2], with_one[2];
-    accelerate_at(constants, effects, x, s, c, 0, without);
-    accelerate_at(constants, effects, x, s, c, 1, with_one);
+    accelerate_at(k, effects, x, s, c, 0, without);
+    accelerate_at(k, effects, x, s, c, 1, with_one);
     return (acceleration - without[0]) / (with_one[0] - without[0]);
 }
 
@@ -597,7 +598,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     position[1][2] = zero;
 }
 
-static const mct_motor *motor_of(const void *constants)
+const mct_motor *mct_cart_pole_motor(const void *constants)
 {
     return &((const constants_t *)constants)->motor;
 }
@@ -643,9 +644,9 @@ MCT_STEPPER_KERNELS(MCT_ALL_SETS, leap, k->step.remainder,
 MCT_STEPPER_KERNELS(MCT_ALL_SETS, rk4, k->step.sixth_remainder, runge_kutta(k, effects, x, u, dx))
 MCT_TAYLOR_MOTOR_KERNELS(k->step.remainder)
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
@@ -662,10 +663,9 @@ static const mct_actuation actuation = {
     .current_limit_parameter = CURRENT_LIMIT,
     .resistance_parameter = RESISTANCE,
     .inductance_parameter = INDUCTANCE,
-    .accelerate = accelerate,
-    .input_for = input_for,
+    .accelerate = mct_cart_pole_accelerate,
     .linearise = linearise,
-    .motor = motor_of,
+    .motor = mct_cart_pole_motor,
 };
 
 const mct_system mct_cart_pole = {
@@ -686,5 +686,5 @@ const mct_system mct_cart_pole = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
-    .motion = motion,
+    .motion = mct_cart_pole_motion,
 };

@@ -189,7 +189,8 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     }
 }
 
-static void discrete(const void *constants, mct_state *state, mct_real u, int32_t steps)
+void mct_chain_discrete(const void *constants, mct_state *state, mct_real u, int32_t steps);
+void mct_chain_discrete(const void *constants, mct_state *state, mct_real u, int32_t steps)
 {
     const constants_t *k = constants;
     (void)u;
@@ -202,10 +203,11 @@ static void discrete(const void *constants, mct_state *state, mct_real u, int32_
     }
 }
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
+    static const mct_named_kernel discrete = MCT_NAMED_KERNEL(mct_chain_discrete);
     (void)effects;
-    return stepper == MCT_STEPPER_DISCRETE ? discrete : NULL;
+    return stepper == MCT_STEPPER_DISCRETE ? &discrete : NULL;
 }
 
 const mct_system mct_chain = {

@@ -21,6 +21,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
+#define MCT_SYSTEM falling_sphere
 #include "kernels.h"
 #include "mctau/matrix.h"
 #include "mctau/message.h"
@@ -314,9 +315,9 @@ MCT_KERNELS_4(rk4, k->step.sixth_remainder, 1, SWITCHES,
               mct_rk4_plain(derivative, k, k->step, effects, 1, x, u, dx))
 MCT_KERNELS_4(expo, k->remainder, 1, SWITCHES, exact(k, effects, x, u, dx))
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
         [MCT_STEPPER_EXPO] = expo_kernels,

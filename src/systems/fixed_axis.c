@@ -86,6 +86,12 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     return mct_hinged_particles_prepare(scene, h, &hinging, constants, why);
 }
 
+void mct_fixed_axis_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                           mct_motion *motion)
+{
+    mct_hinged_particles_motion(constants, effects, state, u, motion);
+}
+
 const mct_system mct_fixed_axis = {
     .name = "fixed_axis",
     .doc = "particles on one rigid body that turns about any axis",
@@ -105,5 +111,5 @@ const mct_system mct_fixed_axis = {
     .evaluate = mct_hinged_particles_evaluate,
     .place = mct_hinged_particles_place,
     .kernel = mct_hinged_particles_kernel,
-    .motion = mct_hinged_particles_motion,
+    .motion = mct_fixed_axis_motion,
 };

@@ -187,14 +187,6 @@ MCT_INLINE void mct_hinge_rkn6(const mct_hinge *k, unsigned effects, const mct_r
     mct_rkn6(mct_hinge_acceleration, &start, k->step, effects, 1, x, u, dx);
 }
 
-/* Of the descriptor. */
-static void mct_hinge_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
-                             mct_motion *motion)
-{
-    const mct_hinge *k = constants;
-    mct_taylor_motion(mct_hinge_series, constants, k->step, effects | MCT_ALWAYS, 1, state, u, motion);
-}
-
 /* Of kernels.h. */
 MCT_INLINE void friction(const void *constants, unsigned effects, const mct_real *x, mct_real u, mct_real *dx)
 {
@@ -223,30 +215,36 @@ static inline void mct_hinge_evaluate(const mct_hinge *k, uint32_t effects, mct_
     out->power[MCT_EFFECT_COULOMB] = dry * w;
 }
 
-/* The kernels, and kernel() of the descriptor: by kernels.h's macros for any stepper and for series, and the first
- * switches of those below that the system has. */
-#define MCT_HINGE_KERNELS(KERNELS, SERIES, ...)                                                 \
-    KERNELS(seed, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                   \
-            mct_seed(mct_hinge_derivative, k, k->hinge.step, effects, 1, x, u, dx))             \
-    KERNELS(euler, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                  \
-            mct_euler(mct_hinge_kick_implicit, k, k->hinge.step, effects, 1, x, u, dx))         \
-    KERNELS(leap, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                   \
-            mct_leap(mct_hinge_kick_symmetric, k, k->hinge.step, effects, 1, x, u, dx))         \
-    KERNELS(rk4, k->hinge.step.sixth_remainder, 1, 5, __VA_ARGS__,                              \
-            mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx))        \
-    SERIES(k->hinge.step.remainder, 1, MCT_GRAVITY, MCT_VISCOUS)                                \
-    MCT_SMOOTH_KERNELS_1(rkn6, k->hinge.step.remainder, 1, 5, MCT_GRAVITY,                      \
-                         mct_hinge_rkn6(&k->hinge, effects, x, u, dx))                          \
-    static mct_kernel kernel(int stepper, uint32_t effects)                                     \
-    {                                                                                           \
-        static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS,       MCT_COULOMB_MOREAU, \
-                                            MCT_DRAG,    MCT_COULOMB_EXACT, 0};                 \
-        static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {                           \
-            [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,             \
-            [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,                 \
-            [MCT_STEPPER_RKN6] = rkn6_kernels, MCT_TAYLOR_ROWS,                                 \
-        };                                                                                      \
-        return mct_switched_kernel_of(kernels, switches, stepper, effects);                     \
+/* The kernels, and kernel() and motion() of the descriptor: by kernels.h's macros for any stepper and for series, and
+ * the first switches of those below that the system has. */
+#define MCT_HINGE_KERNELS(KERNELS, SERIES, ...)                                                             \
+    KERNELS(seed, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                               \
+            mct_seed(mct_hinge_derivative, k, k->hinge.step, effects, 1, x, u, dx))                         \
+    KERNELS(euler, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                              \
+            mct_euler(mct_hinge_kick_implicit, k, k->hinge.step, effects, 1, x, u, dx))                     \
+    KERNELS(leap, k->hinge.step.remainder, 1, 5, __VA_ARGS__,                                               \
+            mct_leap(mct_hinge_kick_symmetric, k, k->hinge.step, effects, 1, x, u, dx))                     \
+    KERNELS(rk4, k->hinge.step.sixth_remainder, 1, 5, __VA_ARGS__,                                          \
+            mct_rk4(mct_hinge_derivative_at, 0, k, k->hinge.step, effects, 1, x, u, dx))                    \
+    SERIES(k->hinge.step.remainder, 1, MCT_GRAVITY, MCT_VISCOUS)                                            \
+    MCT_SMOOTH_KERNELS_1(rkn6, k->hinge.step.remainder, 1, 5, MCT_GRAVITY,                                  \
+                         mct_hinge_rkn6(&k->hinge, effects, x, u, dx))                                      \
+    static const mct_named_kernel *kernel(int stepper, uint32_t effects)                                    \
+    {                                                                                                       \
+        static const uint32_t switches[] = {MCT_GRAVITY, MCT_VISCOUS,       MCT_COULOMB_MOREAU,             \
+                                            MCT_DRAG,    MCT_COULOMB_EXACT, 0};                             \
+        static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {                                 \
+            [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,                         \
+            [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,                             \
+            [MCT_STEPPER_RKN6] = rkn6_kernels, MCT_TAYLOR_ROWS,                                             \
+        };                                                                                                  \
+        return mct_switched_kernel_of(kernels, switches, stepper, effects);                                 \
+    }                                                                                                       \
+    void MCT_OF_SYSTEM(motion)(const void *constants, uint32_t effects, const mct_state *state, mct_real u, \
+                               mct_motion *motion)                                                          \
+    {                                                                                                       \
+        const mct_hinge *k = constants;                                                                     \
+        mct_taylor_motion(mct_hinge_series, constants, k->step, effects | MCT_ALWAYS, 1, state, u, motion); \
     }
 
 #endif

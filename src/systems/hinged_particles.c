@@ -13,6 +13,7 @@
 #include "mctau/matrix.h"
 #include "mctau/rotation.h"
 
+#define MCT_SYSTEM hinged_particles
 #define MCT_ALWAYS (MCT_HINGE_SINE | MCT_HINGE_COSINE)
 #include "hinge.h"
 
@@ -135,13 +136,7 @@ void mct_hinged_particles_place(const void *constants, mct_hyperdual time, const
 
 MCT_HINGE_KERNELS(MCT_SMOOTH_KERNELS_3, MCT_TAYLOR_EXACT, MCT_GRAVITY, MCT_VISCOUS, MCT_COULOMB_MOREAU)
 
-mct_kernel mct_hinged_particles_kernel(int stepper, uint32_t effects)
+const mct_named_kernel *mct_hinged_particles_kernel(int stepper, uint32_t effects)
 {
     return kernel(stepper, effects);
-}
-
-void mct_hinged_particles_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
-                                 mct_motion *motion)
-{
-    mct_hinge_motion(constants, effects, state, u, motion);
 }

@@ -33,7 +33,7 @@ void mct_hinged_particles_evaluate(const void *constants, uint32_t effects, cons
                                    mct_evaluation *out);
 void mct_hinged_particles_place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,
                                 mct_hyperdual (*position)[3]);
-mct_kernel mct_hinged_particles_kernel(int stepper, uint32_t effects);
+const mct_named_kernel *mct_hinged_particles_kernel(int stepper, uint32_t effects);
 void mct_hinged_particles_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
                                  mct_motion *motion);
 

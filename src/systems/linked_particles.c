@@ -17,6 +17,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
+#define MCT_SYSTEM linked_particles
 #include "kernels.h"
 #include "mctau/scene.h"
 #include "systems.h"
@@ -143,9 +144,9 @@ MCT_KERNELS_1(leap, k->step.remainder, 1, MCT_FORCES, mct_leap(kick, k, k->step,
 MCT_KERNELS_1(rk4, k->step.sixth_remainder, 1, MCT_FORCES,
               mct_rk4_plain(derivative, k, k->step, effects, 1, x, u, dx))
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,

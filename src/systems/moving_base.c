@@ -33,6 +33,7 @@
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
 #include "../steppers/taylor.h"
+#define MCT_SYSTEM moving_base
 #include "kernels.h"
 #include "mctau/scene.h"
 #include "mctau/sincos.h"
@@ -371,9 +372,9 @@ MCT_KERNELS_3(rk4, k->step.sixth_remainder, 1, SWITCHES,
               (mct_rk4(derivative_at, 0, k, k->step, effects, 1, x, u, dx), turn_base(k, effects, dx)))
 MCT_TAYLOR_KERNELS_3(k->step.remainder, 1, 3, SWITCHES)
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,

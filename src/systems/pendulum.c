@@ -14,6 +14,7 @@
 #include "mctau/scene.h"
 #include "systems.h"
 
+#define MCT_SYSTEM pendulum
 #define MCT_ALWAYS MCT_HINGE_SINE
 #include "hinge.h"
 
@@ -114,5 +115,5 @@ const mct_system mct_pendulum = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
-    .motion = mct_hinge_motion,
+    .motion = mct_pendulum_motion,
 };

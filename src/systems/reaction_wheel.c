@@ -29,6 +29,7 @@
 #include "../steppers/rk4.h"
 #include "../steppers/seed.h"
 #include "../steppers/taylor.h"
+#define MCT_SYSTEM reaction_wheel
 #include "kernels.h"
 #include "mctau/matrix.h"
 #include "mctau/scene.h"
@@ -443,8 +444,8 @@ MCT_INLINE void taylor(const void *constants, unsigned effects, int order, const
     mct_taylor_dry(series, constants, dry, k->step.h, effects, order, 2, x, u, dx);
 }
 
-static void motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
-                   mct_motion *out)
+void mct_reaction_wheel_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
+                               mct_motion *out)
 {
     const constants_t *k = constants;
     mct_taylor_motion(series, constants, k->step, effects, 2, state, u, out);
@@ -520,8 +521,8 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     mct_motor_powers(&k->motor, effects, u, wheel_rate, out);
 }
 
-static void accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
-                       mct_real u, mct_real *a)
+void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s,
+                                   mct_real c, mct_real u, mct_real *a)
 {
     const constants_t *k = constants;
     (void)c;
@@ -553,7 +554,7 @@ static void place(const void *constants, mct_hyperdual time, const mct_hyperdual
     }
 }
 
-static const mct_motor *motor_of(const void *constants)
+const mct_motor *mct_reaction_wheel_motor(const void *constants)
 {
     return &((const constants_t *)constants)->motor;
 }
@@ -583,9 +584,9 @@ MCT_STEPPER_KERNELS(MCT_DRY_SETS, expo, 0, mct_expo_increments(&k->expo, 2, 1, e
 
 MCT_STEPPER_KERNELS(MCT_SMOOTH_SETS, expo8, 0, mct_expo_increments(&k->expo, 4, 3, effects, 2, x, u, dx))
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,
         [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,
@@ -604,9 +605,9 @@ static const mct_actuation actuation = {
     .current_limit_parameter = CURRENT_LIMIT,
     .resistance_parameter = RESISTANCE,
     .inductance_parameter = INDUCTANCE,
-    .accelerate = accelerate,
+    .accelerate = mct_reaction_wheel_accelerate,
     .linearise = linearise,
-    .motor = motor_of,
+    .motor = mct_reaction_wheel_motor,
 };
 
 const mct_system mct_reaction_wheel = {
@@ -627,5 +628,5 @@ const mct_system mct_reaction_wheel = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
-    .motion = motion,
+    .motion = mct_reaction_wheel_motion,
 };

@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "../steppers/rk4_plain.h"
+#define MCT_SYSTEM rigid_body
 #define MCT_ALWAYS MCT_ROTATION
 #include "kernels.h"
 #include "mctau/inertia.h"
@@ -713,14 +714,13 @@ MCT_KERNELS_3(seed, k->rotor.step.remainder, N, SWITCHES, whole(seed, k, effects
 MCT_KERNELS_3(euler, k->rotor.step.remainder, N, SWITCHES, whole(euler, k, effects, 0, x, dx))
 MCT_KERNELS_3(leap, k->rotor.step.remainder, N, SWITCHES, whole(leap, k, effects, 0, x, dx))
 MCT_KERNELS_3(rk4, k->rotor.step.sixth_remainder, N, SWITCHES, whole(rk4, k, effects, 0, x, dx))
-MCT_SWITCH_INCREMENTS(split3, whole(split3, k, effects, 0, x, dx))
-MCT_QUAD(split3, k->rotor.step.remainder, N, s, 0, MCT_GRAVITY, MCT_FORCES)
-static const mct_kernel split3_kernels[8] = {MCT_QUAD_NAMES(split3, s)};
+MCT_SMOOTH_KERNELS_2(split3, k->rotor.step.remainder, N, 3, MCT_GRAVITY, MCT_FORCES,
+                     whole(split3, k, effects, 0, x, dx))
 MCT_TAYLOR_KERNELS_2(k->rotor.step.remainder, N, 3, MCT_GRAVITY, MCT_FORCES)
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,     [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,     [MCT_STEPPER_RK4] = rk4_kernels,
         [MCT_STEPPER_SPLIT3] = split3_kernels, MCT_TAYLOR_ROWS,

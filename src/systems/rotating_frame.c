@@ -27,6 +27,7 @@
 #include "../steppers/leap.h"
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
+#define MCT_SYSTEM rotating_frame
 #define MCT_ALWAYS MCT_TIMED
 #include "kernels.h"
 #include "mctau/matrix.h"
@@ -490,22 +491,18 @@ MCT_KERNELS_5(leap, k->step.remainder, N, SWITCHES,
               mct_leap(kick_symmetric, k, k->step, effects, N, x, u, dx))
 MCT_KERNELS_5(rk4, k->step.sixth_remainder, N, SWITCHES,
               mct_rk4_plain(derivative, k, k->step, effects, N, x, u, dx))
-MCT_SWITCH_INCREMENTS(expo, flow(k, effects, x, dx))
+/* In space the mass is free, if nothing is left out and no air slows it: the last three switches and perhaps gravity. */
+MCT_INCREMENTS(expo, flow(k, effects, x, dx))
 MCT_PAIR(expo, k->step.remainder, N, exact, APPARENT, MCT_GRAVITY)
+static const mct_named_kernel expo_kernels[32] = {[28] = MCT_PAIR_NAMES(expo, exact)};
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
-        [MCT_STEPPER_SEED] = seed_kernels,
-        [MCT_STEPPER_EULER] = euler_kernels,
-        [MCT_STEPPER_LEAP] = leap_kernels,
-        [MCT_STEPPER_RK4] = rk4_kernels,
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
+        [MCT_STEPPER_SEED] = seed_kernels, [MCT_STEPPER_EULER] = euler_kernels,
+        [MCT_STEPPER_LEAP] = leap_kernels, [MCT_STEPPER_RK4] = rk4_kernels,
+        [MCT_STEPPER_EXPO] = expo_kernels,
     };
-    if (stepper ==
-        MCT_STEPPER_EXPO) { /* in space the mass is free, if nothing is left out and no air slows it */
-        const bool is_free = (effects & (APPARENT | MCT_DRAG)) == APPARENT;
-        return !is_free ? NULL : (effects & MCT_GRAVITY) ? expo_exact1 : expo_exact0;
-    }
     return mct_switched_kernel_of(kernels, switches, stepper, effects);
 }
 

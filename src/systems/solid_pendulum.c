@@ -22,6 +22,7 @@
 #include "mctau/scene.h"
 #include "systems.h"
 
+#define MCT_SYSTEM solid_pendulum
 #define MCT_ALWAYS MCT_HINGE_COSINE
 #include "hinge.h"
 
@@ -147,5 +148,5 @@ const mct_system mct_solid_pendulum = {
     .evaluate = evaluate,
     .place = place,
     .kernel = kernel,
-    .motion = mct_hinge_motion,
+    .motion = mct_solid_pendulum_motion,
 };

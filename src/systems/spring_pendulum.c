@@ -31,6 +31,7 @@
 #include "../steppers/rk4_plain.h"
 #include "../steppers/seed.h"
 #include "../steppers/taylor.h"
+#define MCT_SYSTEM spring_pendulum
 #include "kernels.h"
 #include "mctau/arctan.h"
 #include "mctau/matrix.h"
@@ -884,9 +885,9 @@ MCT_KERNELS_3(taylor8, k->step.remainder, 2, SWITCHES, taylor_step(k, effects, 8
 MCT_KERNELS_3(taylor12, k->step.remainder, 2, SWITCHES, framed_taylor(k, effects, 12, x, u, dx))
 MCT_KERNELS_3(split3, k->step.remainder, 2, SWITCHES, split3(k, effects, x, u, dx))
 
-static mct_kernel kernel(int stepper, uint32_t effects)
+static const mct_named_kernel *kernel(int stepper, uint32_t effects)
 {
-    static const mct_kernel *const kernels[MCT_STEPPER_COUNT] = {
+    static const mct_named_kernel *const kernels[MCT_STEPPER_COUNT] = {
         [MCT_STEPPER_SEED] = seed_kernels,     [MCT_STEPPER_EULER] = euler_kernels,
         [MCT_STEPPER_LEAP] = leap_kernels,     [MCT_STEPPER_RK4] = rk4_kernels,
         [MCT_STEPPER_SPLIT3] = split3_kernels, MCT_TAYLOR_ROWS,

@@ -8,7 +8,7 @@ import re
 import shlex
 import subprocess
 
-from checks import deletion, kernels
+from checks import deletion, kernels, symbols
 
 # Of a deleted text those kernels alone are made that have exactly the other effects.
 ONLY = """
@@ -22,7 +22,7 @@ DEFINITION = re.compile(r"\bvoid mct_advance \( mct_derivative increments , mct_
 
 @dataclasses.dataclass(frozen=True)
 class Kernel:
-    """One of the library's: found by asking mct_system.kernel(), with the symbol at the address."""
+    """One of the library's: found by asking mct_system.kernel()."""
 
     system: str
     stepper: str
@@ -38,24 +38,24 @@ def printed(*command):
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-def all_kernels(build, source, folder):
-    """Every kernel of the library in double precision."""
+def kernels_program(build, source, folder):
+    """A program that prints all kernels of the library in double precision, with their addresses in it."""
     program = folder / "kernels"
     parts = [source / "tools/cortex_m" / name for name in ("kernels.c", "native.c")]
     includes = [f"-I{place}" for place in (build / "include/double", source / "include", source)]
     compiler = shlex.split(os.environ.get("CC", "cc"))
     subprocess.run([*compiler, "-no-pie", *includes, *parts, build / "libmctau.a", "-o", program], check=True)
-    symbols, file = {}, None
-    for line in printed("objdump", "-t", program):
-        words = line.split()
-        if " df " in line:
-            file = words[-1]
-        elif " F " in line:
-            symbols[int(words[0], 16)] = (file, words[-1])
+    return program
+
+
+def all_kernels(build, source, folder):
+    """Every kernel of the library in double precision."""
+    members = symbols.symbols([build / "libmctau.a"], "-g", "--defined-only")
+    files = {name: re.search(r"\[(.+)\.o\]$", member)[1] for member, _, name in members}
     found = []
-    for line in printed(program):
-        system, stepper, effects, address = line.split()
-        found.append(Kernel(system, stepper, int(effects, 16), *symbols[int(address, 16)]))
+    for line in printed(kernels_program(build, source, folder)):
+        system, stepper, effects, _, symbol = line.split()
+        found.append(Kernel(system, stepper, int(effects, 16), files[symbol], symbol))
     return found
 
 

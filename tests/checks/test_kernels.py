@@ -90,7 +90,8 @@ def executed(build, source, plain):
 def test_an_effect_more_never_makes_a_kernel_smaller(build, library, system, stepper, motor):
     for tag in tags(build):
         functions = library(system, tag)
-        size = [kernels.arithmetic(functions[f"{stepper}_{MOTORS[motor]}_{others}"]) for others in range(8)]
+        size = [kernels.arithmetic(functions[f"mct_{system}_{stepper}_{MOTORS[motor]}_{others}"])
+                for others in range(8)]
         for more in range(8):
             for less in (more & ~GRAVITY, more & ~VISCOUS, more & ~COULOMB):
                 assert size[less] <= size[more], f"{tag}: {size}"
@@ -101,14 +102,15 @@ def test_a_motor_more_never_makes_a_kernel_smaller(build, library, system, stepp
     for tag in tags(build):
         functions = library(system, tag)
         for others in range(8):
-            size = [kernels.arithmetic(functions[f"{stepper}_{motor}_{others}"]) for motor in MOTORS.values()]
+            size = [kernels.arithmetic(functions[f"mct_{system}_{stepper}_{motor}_{others}"])
+                    for motor in MOTORS.values()]
             assert size == sorted(size), f"{tag}, others {others}: {size}"
 
 
 def test_an_effect_more_never_makes_a_series_smaller(build, library):
     for tag in tags(build):
         functions = library("cart_pole", tag)
-        size = [[kernels.arithmetic(functions[f"taylor4_{motor}_{others}"]) for others in range(4)]
+        size = [[kernels.arithmetic(functions[f"mct_cart_pole_taylor4_{motor}_{others}"]) for others in range(4)]
                 for motor in MOTORS.values()]
         for each in size:
             assert each[0] <= min(each[1], each[2]) and max(each[1], each[2]) <= each[3], f"{tag}: {size}"

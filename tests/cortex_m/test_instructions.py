@@ -25,9 +25,9 @@ def rows_of(target, image, job):
 
 @pytest.fixture
 def kernels(mctau):
-    """Names of kernels: leap_1_3, leap_s01, ..."""
+    """Names of the central systems' kernels: mct_cart_pole_leap_0_3, ..."""
     listed = json.loads(mctau("list", "--json").stdout)["steppers"]
-    return re.compile(f"({'|'.join(stepper['name'] for stepper in listed)})_[s0-9_]+")
+    return re.compile(f"mct_({'|'.join(CENTRAL)})_({'|'.join(stepper['name'] for stepper in listed)})_[0-9]+_[0-9]+")
 
 
 def by_stepper(rows, key):

@@ -20,7 +20,7 @@ typedef struct {
 static void check_axis(const mct_can_axis *axis)
 {
     FUZZ_RULE(isfinite(axis->rate), "a rate is finite: %g", axis->rate);
-    FUZZ_RULE(isfinite(axis->bus_voltage), "a bus voltage is finite: %g", axis->bus_voltage);
+    FUZZ_RULE(isfinite(mct_can_bus_voltage(axis)), "a bus voltage is finite: %g", mct_can_bus_voltage(axis));
     FUZZ_RULE(axis->state <= MCT_CAN_DRIVE_FAULTY, "a state is one of the four: %d", (int)axis->state);
     for (int i = 0; i < MCT_CAN_ENCODERS; i++) {
         FUZZ_RULE(isfinite(axis->encoders[i].turns), "turns are finite: %g", axis->encoders[i].turns);

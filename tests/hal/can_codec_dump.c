@@ -89,6 +89,7 @@ static const mct_can_protocol *read_settings(void)
     scene.can_watchdog = 0.1;
     axis.protocol = device.protocol = protocol;
     axis.scene = device.scene = &scene;
+    axis.watchdog_ms = mct_can_watchdog_ms(scene.can_watchdog);
     axis.node = device.node = (uint8_t)integer();
     axis.roles = device.roles = MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER | MCT_CAN_OF_SPARE;
     device.counts_per_turn = 4096;
@@ -174,7 +175,7 @@ static void dump_hear(void)
            (int)verdict, (int)axis.state, axis.error, axis.watchdog_expired, axis.estopped, axis.serial,
            axis.encoders[0].counts, axis.encoders[1].counts, axis.encoders[0].capture_us,
            axis.encoders[1].capture_us, axis.encoders[0].echo, axis.encoders[1].echo, axis.encoders[0].steps);
-    print_number("bus_voltage", axis.bus_voltage, ", ");
+    print_number("bus_voltage", mct_can_bus_voltage(&axis), ", ");
     print_number("turns", axis.encoders[0].turns, ", ");
     print_number("rate", axis.rate, "}\n");
 }

@@ -36,6 +36,7 @@ static void begin(const mct_can_protocol *protocol, uint8_t node)
     memset(&axis, 0, sizeof axis);
     axis.protocol = protocol;
     axis.scene = &scene;
+    axis.watchdog_ms = mct_can_watchdog_ms(scene.can_watchdog);
     axis.node = node;
     axis.roles = MCT_CAN_OF_MOTOR | MCT_CAN_OF_ENCODER;
     axis.motor =
@@ -303,7 +304,7 @@ static void test_any_frame_is_survived(void)
                     TEST_ASSERT_EQUAL_MEMORY(&before, &axis, sizeof axis);
                 }
                 obey(&frame);
-                TEST_ASSERT_TRUE(isfinite(axis.rate) && isfinite(axis.bus_voltage));
+                TEST_ASSERT_TRUE(isfinite(axis.rate) && isfinite(mct_can_bus_voltage(&axis)));
                 TEST_ASSERT_TRUE(isfinite(axis.encoders[0].turns) && isfinite(device.value));
                 TEST_ASSERT_TRUE(isfinite(axis.change) && isfinite(axis.encoders[0].fastest));
                 device.turns = device.value * 1e20;
@@ -312,7 +313,7 @@ static void test_any_frame_is_survived(void)
                 device.has_driven = true;
                 device.rate = axis.rate * 1e30;
                 device.amperes = device.volts = device.temperature = -device.turns;
-                device.supply = axis.bus_voltage;
+                device.supply = mct_can_bus_voltage(&axis);
                 for (int j = 0; j < axis.protocol->message_count; j++) {
                     axis.protocol->report(&device, j, &frame);
                 }
@@ -497,7 +498,7 @@ static void test_native_timeout_is_within_what_the_frame_holds(void)
                  {2, 255},   {0.0997, 100}, {0, 0},     {1e-4, 5}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         begin(&mct_can_native, 1);
-        scene.can_watchdog = cases[i].seconds;
+        axis.watchdog_ms = mct_can_watchdog_ms(cases[i].seconds);
         const mct_can_frame frame = commanded(1, true);
         TEST_ASSERT_EQUAL_UINT8(cases[i].milliseconds, frame.data[6]);
         TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_COMMAND, obey(&frame));
@@ -737,7 +738,7 @@ static void test_native_status_tells_error_supply_and_another_drive(void)
     device.supply = 24.375; /* half a step more than 24.37: away from zero */
     device.serial = 1234;
     TEST_ASSERT_EQUAL_INT(MCT_CAN_IS_STATE, tell("Drive_Status", 0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 24.38, axis.bus_voltage);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 24.38, mct_can_bus_voltage(&axis));
     TEST_ASSERT_EQUAL_UINT16(1234, axis.serial);
     TEST_ASSERT_EQUAL_INT(MCT_CAN_DRIVE_READY, axis.state);
     device.error = 3;

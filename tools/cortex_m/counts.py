@@ -145,7 +145,7 @@ def run_here(job, precision, build=None):
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder, "count")
         _compile_here(program, precision, ["count.c", "native.c"], build or host_build())
-        return _read(output([program], env=os.environ | {"COUNT_JOB": str(job)}))
+        return _read(output([program], env=os.environ | {"IMAGE_ARGUMENTS": str(job)}))
 
 
 # --- code ---

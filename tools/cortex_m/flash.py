@@ -27,7 +27,7 @@ def measure():
     code = counts.Code(image)
     systems = {}
     for line in counts.output([counts.ROOT / "hal/cortex_m/run", "m4f", image]).splitlines():
-        name, stepper, effects, address = line.split()
+        name, stepper, effects, address, _ = line.split()
         system = systems.setdefault(name, System(0, {}))
         effects, address = int(effects, 16), int(address, 16) & ~1  # the lowest bit says Thumb
         system.effects |= effects

@@ -1,6 +1,6 @@
 /*
  * Where each kernel lies: an image for the emulator, of all systems. Prints a line for each system, stepper and set of
- * effects that has one: name, name, set and address, the last two in hexadecimal.
+ * effects that has one: name, name, set and address, the last two in hexadecimal, and the kernel's own name.
  */
 #include <stddef.h>
 
@@ -27,13 +27,15 @@ int main(void)
         for (int stepper = 0; stepper < MCT_STEPPER_COUNT; stepper++) {
             uint32_t effects = 0;
             do {
-                const mct_kernel kernel = system->kernel(stepper, effects);
+                const mct_named_kernel *kernel = system->kernel(stepper, effects);
                 if (kernel != NULL) {
                     mct_semihosting_write(system->name);
                     mct_semihosting_write(" ");
                     mct_semihosting_write(mct_steppers[stepper].name);
                     write_hex(effects);
-                    write_hex((uint32_t)(uintptr_t)kernel);
+                    write_hex((uint32_t)(uintptr_t)kernel->function);
+                    mct_semihosting_write(" ");
+                    mct_semihosting_write(kernel->name);
                     mct_semihosting_write("\n");
                 }
                 effects = (effects - all) & all; /* the next subset */

@@ -10,7 +10,7 @@
 
 /* A new verb is a file and a row here. */
 static const verb *const verbs[] = {&verb_run,  &verb_mct,  &verb_list,   &verb_replay, &verb_drive,
-                                    &verb_cost, &verb_pick, &verb_advise, &verb_hard};
+                                    &verb_cost, &verb_pick, &verb_advise, &verb_hard,   &verb_compile};
 enum { VERBS = sizeof verbs / sizeof verbs[0] };
 
 static void print_overview(FILE *file)

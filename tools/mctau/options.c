@@ -42,10 +42,16 @@ static void print_choices(const mct_field *field, FILE *file)
     }
 }
 
+static bool is_letter(const option *self)
+{
+    return self->name[1] == '\0';
+}
+
 static void print_option(const option *self, FILE *file)
 {
     char head[64];
-    snprintf(head, sizeof head, "--%s %s", self->name, self->argument != NULL ? self->argument : "");
+    snprintf(head, sizeof head, "%s%s %s", is_letter(self) ? "-" : "--", self->name,
+             self->argument != NULL ? self->argument : "");
     fprintf(file, "  %-24s ", head);
     const mct_field *field = self->key != NULL ? find_field(self->key) : NULL;
     fputs(self->doc != NULL ? self->doc : field != NULL ? field->doc : "", file);
@@ -160,21 +166,37 @@ static bool take_operand(arguments *self, int argc, char **argv, int *exit_code)
     return true;
 }
 
+/* What getopt_long() has found, a letter being the row that it names. */
+static int row_of(const verb *asked, int found)
+{
+    for (int i = 0; asked->options[i].name != NULL; i++) {
+        if (is_letter(&asked->options[i]) && found == asked->options[i].name[0]) {
+            return FIRST_OPTION + i;
+        }
+    }
+    return found;
+}
+
 bool arguments_read(arguments *self, const verb *asked, int argc, char **argv, int *exit_code)
 {
     struct option table[MAX_OPTIONS + 2];
+    char letters[2 * MAX_OPTIONS + 3] = ":h";
     int count = 0;
     memset(self, 0, sizeof *self);
     self->verb = asked;
     for (; asked->options[count].name != NULL; count++) {
-        const int has_argument = asked->options[count].argument != NULL ? required_argument : no_argument;
-        table[count] = (struct option){asked->options[count].name, has_argument, NULL, FIRST_OPTION + count};
+        const option *row = &asked->options[count];
+        const int has_argument = row->argument != NULL ? required_argument : no_argument;
+        table[count] = (struct option){row->name, has_argument, NULL, FIRST_OPTION + count};
+        if (is_letter(row)) {
+            strcat(strcat(letters, row->name), has_argument == required_argument ? ":" : "");
+        }
     }
     table[count] = (struct option){"help", no_argument, NULL, HELP};
     table[count + 1] = (struct option){NULL, 0, NULL, 0};
     opterr = 0;
     for (;;) {
-        const int found = getopt_long(argc, argv, ":h", table, NULL);
+        const int found = row_of(asked, getopt_long(argc, argv, letters, table, NULL));
         if (found == -1) {
             return take_operand(self, argc, argv, exit_code);
         }

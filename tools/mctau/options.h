@@ -13,7 +13,7 @@
 #define MAX_OPTIONS 24
 
 typedef struct {
-    const char *name;     /* behind the two dashes */
+    const char *name;     /* behind the two dashes; behind one if it is a letter */
     const char *argument; /* what --help calls its argument; NULL for a switch */
     const char *key;      /* "table.key" of the scene that it stands for, ANY_KEY for --set, NULL for none */
     const char *doc;      /* one line; NULL: what the key's descriptor says */

@@ -7,6 +7,7 @@
 #include "mctau/judge.h"
 #include "mctau/plant.h"
 #include "runner_advise.h"
+#include "runner_compile.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
 #include "runner_ledger.h"
@@ -41,7 +42,7 @@ static mct_real input_of(const mct_scene *scene, const run_options *options, con
                          mct_real bound)
 {
     mct_input open_loop;
-    mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});
+    mct_input_init(&open_loop, scene, RUNNER_SAMPLES(options));
     const mct_real wanted = given != NULL ? (mct_real)*given : mct_input_at(&open_loop, 0);
     return wanted > bound ? bound : wanted < -bound ? -bound : wanted;
 }
@@ -140,6 +141,7 @@ const mct_runner MCT_RUNNER = {
     .loop = runner_loop,
     .depart = runner_depart,
     .time_scale = runner_time_scale,
+    .compile = runner_compile,
     .hard_case_after = hard_case_after,
     .hard_run_case = hard_run_case,
     .hard_judge = hard_judge,

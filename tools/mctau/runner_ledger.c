@@ -446,7 +446,7 @@ static mct_status find_phase_rates(ledger *self, const mct_scene *scene, mct_mes
     const mct_status status = self->system->prepare(scene, h, &self->constants, why);
     memset(&state, 0, sizeof state);
     if (status == MCT_OK) {
-        self->system->kernel(scene->stepper, self->effects)(&self->constants, &state, 0, 1);
+        self->system->kernel(scene->stepper, self->effects)->function(&self->constants, &state, 0, 1);
     }
     for (int i = 0; i < MCT_PHASES; i++) {
         self->phase_rate[i] = ((double)state.x[first + i] + (double)state.c[first + i]) / h;

@@ -170,7 +170,7 @@ typedef struct {
     mctau_tick_t recorded; /* the present tick, in the arrays of which there is room below */
     mct_reading given;     /* its reading */
     mct_reading sensed;    /* the simulation's */
-    double wanted;         /* its input asked for, for inputs of kind csv */
+    mct_real wanted;       /* its input asked for, for inputs of kind csv */
     mct_timing timing;
     uint32_t injected; /* faults from outside that were latched at the last tick, see inject_faults */
 } replay;
@@ -321,7 +321,7 @@ static void compare_tick(replay *self)
     compare_reals(self, "estimate", recorded->estimates, recorded->estimate, record->estimate);
     compare_real(self, "wanted", "", recorded->wanted, record->wanted);
     compare_real(self, "applied", "", recorded->applied, record->applied);
-    compare_integer(self, "mode", "", recorded->mode, (int32_t)record->mode);
+    compare_integer(self, "mode", "", recorded->mode, record->mode);
     compare_integer(self, "faults", "", recorded->faults, (int32_t)record->faults);
     compare_integer(self, "dropped", "", recorded->dropped, 0); /* or there would be a gap */
     compare_integer(self, "rearmed", "", recorded->rearmed, record->rearmed);
@@ -400,7 +400,7 @@ static mct_status replay_decoded(replay *self)
     }
     self->given.age_us = (uint32_t)recorded->age_us;
     self->given.flags = (uint32_t)recorded->flags;
-    self->wanted = recorded->wanted;
+    self->wanted = (mct_real)recorded->wanted;
     inject_faults(self);
     if (recorded->rearmed) {
         mct_loop_rearm(&self->loop);

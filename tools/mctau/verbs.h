@@ -13,5 +13,6 @@ extern const verb verb_cost;
 extern const verb verb_pick;
 extern const verb verb_advise;
 extern const verb verb_hard;
+extern const verb verb_compile;
 
 #endif

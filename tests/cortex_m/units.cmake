@@ -1,0 +1,36 @@
+# Which C tests of src/ run on an emulated Cortex-M too: float on the M4F, double on the M7. For tests/CMakeLists.txt,
+# which names them to ctest, and for the CMakeLists.txt beside this file, which builds them for the target.
+#
+# mctau_units(LIST TAG): the files, in the caller's LIST; left out by what they include or declare:
+#   hal/socketcan                     what they test needs an operating system
+#   quad.h and what includes it       their reference is in quadruple precision, which this compiler has not
+#   long double, of those in double   is a double here
+set(units_kinds m4f m7)
+set(units_tags f32 f64)
+# And by name, with the reason:
+set(units_not_f32)
+set(units_not_f64)
+
+get_filename_component(units_tests ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
+
+function(mctau_units list tag)
+    set(needs "hal/socketcan|support/(quad|reference|bodies|textbook)\\.h")
+    set(other f32)
+    if(tag STREQUAL f64)
+        string(APPEND needs "|long double")
+    else()
+        set(other f64)
+    endif()
+    set(found)
+    foreach(room math gauss effects systems steppers control loop scene)
+        file(GLOB files CONFIGURE_DEPENDS ${units_tests}/${room}/test_*.c)
+        foreach(file IN LISTS files)
+            get_filename_component(name ${file} NAME_WE)
+            file(STRINGS ${file} lacking REGEX "${needs}" LIMIT_COUNT 1)
+            if(NOT lacking AND NOT name MATCHES "_${other}$" AND NOT name IN_LIST units_not_${tag})
+                list(APPEND found ${file})
+            endif()
+        endforeach()
+    endforeach()
+    set(${list} ${found} PARENT_SCOPE)
+endfunction()
