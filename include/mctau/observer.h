@@ -22,8 +22,10 @@
 typedef struct {
     int32_t turn;       /**< counts per turn of an angle, 0 for a length */
     int32_t last;       /**< counter at the last tick */
-    int32_t travelled;  /**< counts since the start, less whole turns or laps */
-    int32_t laps;       /**< of 2^30 counts each, of a length */
+    int32_t lap;        /**< counts per turn; 2^30 of a length */
+    int32_t travelled;  /**< counts since the start, less whole laps */
+    int32_t laps;       /**< gone since the start; may wrap */
+    mct_real lap_moves; /**< counts by which a lap moves the coordinate: all of a length, none of an angle */
     mct_real unit;      /**< coordinate per count */
     mct_real start;     /**< coordinate where the counter started */
     mct_real deviation; /**< e: measured less model, after correction */
@@ -44,7 +46,7 @@ typedef struct {
     mct_real gravity_slope;
     mct_real gravity; /**< model's gravity at the last tick [rad/s^2] */
     mct_real excess;  /**< gravity acts (1 + excess) times as in the model; learned by the controller */
-    mct_real correction[MCT_MAX_ENCODERS]; /**< what the last reading added to the model's acceleration */
+    mct_real correction[MCT_MAX_ENCODERS]; /**< what the last reading added to the rates */
     mct_real x[2 * MCT_MAX_ENCODERS];      /**< estimate: coordinates (angles within +-pi), rates */
     mct_real sine, cosine;                 /**< of the upright coordinate in x */
 } mct_observer;

@@ -164,10 +164,11 @@ static void prepare_learning(mct_controller *controller, const mct_scene *scene)
     controller->memory = (mct_real)(slope * slope * 2 / scene->dt);
 }
 
-static mct_real weighted(const mct_real *weights, const mct_real *x, int states)
+static mct_real weighted(const mct_real *weights, const mct_real *x)
 {
     mct_real sum = 0;
-    for (int i = 0; i < states; i++) {
+    MCT_UNROLL
+    for (int i = 0; i < 2 * MCT_MAX_ENCODERS; i++) {
         sum += weights[i] * x[i];
     }
     return sum;
@@ -175,9 +176,7 @@ static mct_real weighted(const mct_real *weights, const mct_real *x, int states)
 
 mct_real mct_controller_reach(const mct_controller *controller)
 {
-    const mct_real z =
-        weighted(controller->unstable, controller->observer.x, 2 * controller->system->coordinate_count);
-    return z < 0 ? -z : z;
+    return mct_size(weighted(controller->unstable, controller->observer.x));
 }
 
 /*
@@ -222,7 +221,8 @@ static void learn_gravity(mct_controller *controller)
     const mct_real gravity = observer->gravity;
     const mct_real information = controller->information + gravity * gravity;
     controller->information = information < controller->memory ? information : controller->memory;
-    const mct_real correction = observer->correction[controller->system->actuation->upright_coordinate];
+    const int upright = controller->system->actuation->upright_coordinate;
+    const mct_real correction = observer->correction[upright] / observer->h;
     observer->excess =
         mct_clamp(observer->excess + gravity * correction / controller->information, MCT_R(0.5));
 }
@@ -340,16 +340,16 @@ mct_status mct_controller_init(mct_controller *controller, mct_constants *consta
 static mct_real balance(mct_controller *controller)
 {
     const mct_system *system = controller->system;
-    const int n = system->coordinate_count;
     mct_real x[2 * MCT_MAX_ENCODERS];
     memcpy(x, controller->observer.x, sizeof x);
-    for (int i = 0; i < n; i++) {
+    MCT_UNROLL
+    for (int i = 0; i < MCT_MAX_ENCODERS; i++) {
         if (system->coordinates[i].is_cyclic) {
-            controller->travelled[i] += controller->observer.h * x[n + i];
+            controller->travelled[i] += controller->observer.h * x[MCT_MAX_ENCODERS + i];
             x[i] = controller->travelled[i];
         }
     }
-    return -weighted(controller->gains, x, 2 * n);
+    return -weighted(controller->gains, x);
 }
 
 void mct_controller_restart(mct_controller *controller)

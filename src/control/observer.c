@@ -10,19 +10,22 @@
 
 enum {
     LONG_GAP = 5, /* ticks: by then the voltage is zero */
-    LAP = 1 << 30
+    LAP = 1 << 30 /* counts of a length */
 };
 
 /* Within +-pi, from within +-(2 pi + pi). */
 static mct_real wrapped(mct_real angle)
 {
-    const mct_real turns = angle > MCT_R(3 * PI) ? MCT_R(2 * TURN) : angle > MCT_R(PI) ? MCT_R(TURN) : 0;
-    const mct_real back = angle < MCT_R(-3 * PI) ? MCT_R(2 * TURN) : angle < MCT_R(-PI) ? MCT_R(TURN) : 0;
-    return angle - turns + back;
+    const mct_real size = mct_size(angle);
+    if (size <= MCT_R(PI)) {
+        return angle;
+    }
+    const mct_real turns = size > MCT_R(3 * PI) ? MCT_R(2 * TURN) : MCT_R(TURN);
+    return angle > 0 ? angle - turns : angle + turns;
 }
 
 /* What follows from the estimated positions. */
-static void take_sine(mct_observer *observer)
+MCT_INLINE void take_sine(mct_observer *observer)
 {
     const mct_real upright = observer->x[observer->system->actuation->upright_coordinate];
     mct_sincos(upright, &observer->sine, &observer->cosine);
@@ -49,6 +52,8 @@ void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct
         const bool angle = system->coordinates[i].is_angle;
         const double counts = scene->counts_per_unit[i];
         track->turn = angle ? (int32_t)(counts + 0.5) : 0;
+        track->lap = angle ? track->turn : LAP;
+        track->lap_moves = angle ? 0 : (mct_real)LAP;
         track->unit = (mct_real)(angle ? TURN / track->turn : 1 / counts);
         double start = scene->initial[i];
         if (angle) {
@@ -82,25 +87,32 @@ static int32_t counts_moved(const mct_encoder_track *track, int32_t counts, uint
     return shift == 0 ? moved : moved / (int32_t)(1u << shift); /* exact: the low bits are zero */
 }
 
-/* No sum leaves 32 bits: a turn or lap is 2^30 counts at most. */
+/* No sum leaves 32 bits: a lap is 2^30 counts at most. */
 static void travel(mct_encoder_track *track, int32_t moved)
 {
-    const int32_t lap = track->turn != 0 ? track->turn : LAP;
+    const int32_t lap = track->lap;
     const int32_t sum = track->travelled + moved % lap;
     track->travelled = sum % lap;
-    if (track->turn == 0) {
-        track->laps += moved / lap + sum / lap;
+    track->laps = (int32_t)((uint32_t)track->laps + (uint32_t)(moved / lap + sum / lap));
+}
+
+/* What has decayed to next to nothing comes to rest. As a product in range nearly always tells, both are in range. */
+static void settle(mct_real *rate, mct_real *deviation)
+{
+    if (!(mct_size(*rate * *deviation) >= MCT_REAL_NOTHING)) {
+        *rate = mct_settled(*rate);
+        *deviation = mct_settled(*deviation);
     }
 }
 
 void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct_real input)
 {
-    const int n = observer->system->coordinate_count;
+    enum { N = MCT_MAX_ENCODERS }; /* coordinates of a system with a motor */
     const mct_real h = observer->h;
     const bool valid = (reading->flags & MCT_READING_NO_COUNTS) == 0;
     if (!observer->started) {
         if (valid) {
-            for (int i = 0; i < n; i++) {
+            for (int i = 0; i < N; i++) {
                 observer->encoders[i].last = reading->counts[i];
             }
             observer->started = true;
@@ -118,29 +130,29 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
         observer->gravity = observer->gravity_slope * observer->sine;
         a[upright] += observer->excess * observer->gravity;
     }
-    for (int i = 0; i < n; i++) {
+    MCT_UNROLL
+    for (int i = 0; i < N; i++) {
         mct_encoder_track *track = &observer->encoders[i];
-        mct_real *rate = &observer->x[n + i];
-        const mct_real model_moved = h * *rate + MCT_R(0.5) * h * h * a[i];
-        *rate += h * a[i];
-        if (!valid) {
-            track->deviation -= model_moved; /* the count stood still: the model goes on alone */
-            observer->correction[i] = 0;
-        } else {
+        const mct_real model_moved = h * observer->x[N + i] + MCT_R(0.5) * h * h * a[i];
+        mct_real rate = observer->x[N + i] + h * a[i];
+        mct_real deviation = track->deviation - model_moved; /* when the count stood still: the model goes on alone */
+        observer->correction[i] = 0;
+        if (valid) {
             const int32_t moved = counts_moved(track, reading->counts[i], observer->counter_shift);
             track->last = reading->counts[i];
             travel(track, moved);
-            const mct_real deviation =
+            const mct_real missed =
                 is_back ? 0 : track->deviation + ((mct_real)moved * track->unit - model_moved);
-            track->deviation = observer->keep * deviation;
-            *rate += observer->rate_gain * deviation;
-            observer->correction[i] = observer->rate_gain * deviation / h;
+            deviation = observer->keep * missed;
+            rate += observer->rate_gain * missed;
+            observer->correction[i] = observer->rate_gain * missed;
         }
-        track->deviation = mct_settled(track->deviation);
-        *rate = mct_settled(*rate);
-        const mct_real counts = (mct_real)track->laps * MCT_R(LAP) + (mct_real)track->travelled;
+        settle(&rate, &deviation);
+        track->deviation = deviation;
+        observer->x[N + i] = rate;
+        const mct_real counts = (mct_real)track->laps * track->lap_moves + (mct_real)track->travelled;
         const mct_real measured = track->start + counts * track->unit;
-        const mct_real position = measured - track->deviation;
+        const mct_real position = measured - deviation;
         observer->x[i] = track->turn != 0 ? wrapped(position) : position;
     }
     take_sine(observer);

@@ -109,27 +109,24 @@ void mct_supervisor_watch_balance(mct_supervisor *supervisor, bool is_balancing)
     }
 }
 
-static mct_real size_of(mct_real value)
-{
-    return value < 0 ? -value : value;
-}
-
 static void watch_estimate(mct_supervisor *supervisor, const mct_real *estimate)
 {
     const mct_system *system = supervisor->system;
-    const int n = system->coordinate_count;
     const int driven = system->actuation->driven_coordinate;
-    for (int i = 0; i < 2 * n; i++) {
-        if (!mct_finite(estimate[i])) {
-            mct_supervisor_fault(supervisor, MCT_FAULT_ESTIMATE);
-            return;
-        }
+    mct_real doubt = 0; /* NaN where any is not finite */
+    MCT_UNROLL
+    for (int i = 0; i < 2 * MCT_MAX_ENCODERS; i++) {
+        doubt += estimate[i] - estimate[i];
+    }
+    if (doubt != 0) {
+        mct_supervisor_fault(supervisor, MCT_FAULT_ESTIMATE);
+        return;
     }
     if (!system->coordinates[driven].is_angle) {
-        if (size_of(estimate[driven]) > supervisor->track_half_length) {
+        if (mct_size(estimate[driven]) > supervisor->track_half_length) {
             mct_supervisor_fault(supervisor, MCT_FAULT_TRACK_END);
         }
-    } else if (size_of(estimate[n + driven]) > supervisor->overspeed) {
+    } else if (mct_size(estimate[MCT_MAX_ENCODERS + driven]) > supervisor->overspeed) {
         mct_supervisor_fault(supervisor, MCT_FAULT_OVERSPEED);
     }
 }
@@ -142,7 +139,7 @@ static void watch_motion(mct_supervisor *supervisor, const mct_reading *reading,
 {
     const mct_actuation *actuation = supervisor->system->actuation;
     const int32_t counts = actuation != NULL ? reading->counts[actuation->driven_coordinate] : 0;
-    const bool driven = supervisor->armed && size_of(wanted) > supervisor->watch_limit;
+    const bool driven = supervisor->armed && mct_size(wanted) > supervisor->watch_limit;
     supervisor->frozen_ticks = driven && counts == supervisor->last_counts ? supervisor->frozen_ticks + 1 : 0;
     supervisor->last_counts = counts;
     if (supervisor->frozen_ticks > supervisor->frozen_limit) {
@@ -214,7 +211,7 @@ mct_real mct_supervisor_pass(mct_supervisor *supervisor, const mct_reading *read
         supervisor->armed = true;
     }
     mct_real passed = wanted;
-    if (passed > supervisor->limit || passed < -supervisor->limit) {
+    if (mct_size(passed) > supervisor->limit) {
         passed = passed > 0 ? supervisor->limit : -supervisor->limit;
         supervisor->limited_ticks++;
     }

@@ -562,8 +562,12 @@ MCT_INLINE void accelerate_at(const constants_t *k, uint32_t effects, const mct_
 {
     const mct_real force = mct_motor_observed_force(&k->motor, effects, u, x[2]);
     const mct_real thd = x[3];
-    const mct_real cart_damping = k->cart_viscous + drag_of(k, 0, x[2]);
-    const mct_real pole_damping = k->pole_viscous + drag_of(k, 1, thd);
+    mct_real cart_damping = k->cart_viscous;
+    mct_real pole_damping = k->pole_viscous;
+    if (effects & MCT_DRAG) {
+        cart_damping += drag_of(k, 0, x[2]);
+        pole_damping += drag_of(k, 1, thd);
+    }
     solve(k, true, s, c, force - cart_damping * x[2] + k->moment * s * thd * thd,
           k->weight_moment * s - pole_damping * thd, a);
 }

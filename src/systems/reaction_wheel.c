@@ -526,9 +526,14 @@ void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, cons
 {
     const constants_t *k = constants;
     (void)c;
-    const mct_real tau2 = mct_motor_observed_force(&k->motor, effects, u, x[3]) -
-                          (k->wheel_viscous + drag_of(k, 1, x[3])) * x[3];
-    const mct_real tau1 = k->weight_moment * s - (k->arm_viscous + drag_of(k, 0, x[2])) * x[2];
+    mct_real arm_damping = k->arm_viscous;
+    mct_real wheel_damping = k->wheel_viscous;
+    if (effects & MCT_DRAG) {
+        arm_damping += drag_of(k, 0, x[2]);
+        wheel_damping += drag_of(k, 1, x[3]);
+    }
+    const mct_real tau1 = k->weight_moment * s - arm_damping * x[2];
+    const mct_real tau2 = mct_motor_observed_force(&k->motor, effects, u, x[3]) - wheel_damping * x[3];
     a[0] = (tau1 - tau2) * k->inverse_arm;
     a[1] = tau2 * k->inverse_wheel - a[0];
 }

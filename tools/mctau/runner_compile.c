@@ -281,7 +281,9 @@ static void put_encoder(text *self, const mct_encoder_track *from, int number)
     begin(self, name);
     INTEGER(turn);
     INTEGER(last);
+    INTEGER(lap);
     INTEGER(travelled);
+    REAL(lap_moves);
     REAL(unit);
     REAL(start);
     REAL(deviation);
