@@ -43,7 +43,7 @@ static mct_real input_of(const mct_scene *scene, const run_options *options, con
                          mct_real bound)
 {
     mct_input open_loop;
-    mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});
+    mct_input_init(&open_loop, scene, RUNNER_SAMPLES(options));
     const mct_real wanted = given != NULL ? (mct_real)*given : mct_input_at(&open_loop, 0);
     return wanted > bound ? bound : wanted < -bound ? -bound : wanted;
 }

@@ -37,14 +37,27 @@ typedef struct {
     uint64_t lost_ticks; /* whose exact motion could not be followed: left unexplained */
 } ledger_result;
 
+/* Of a csv input, one a tick. */
+typedef struct {
+    double *f64;
+    float *f32; /* the same, rounded */
+    size_t count;
+} csv_samples;
+
+/* Those of a runner's own precision. */
+#if MCT_REAL_IS_FLOAT
+#define RUNNER_SAMPLES(options) ((mct_samples){(options)->samples.f32, (options)->samples.count})
+#else
+#define RUNNER_SAMPLES(options) ((mct_samples){(options)->samples.f64, (options)->samples.count})
+#endif
+
 /* Where the results of a run go; NULL or "" for nowhere. */
 typedef struct {
     const char *csv; /* path, "-" for stdout */
     const char *log;
     const char *lcm;
     const char *scene_text; /* as read, with its overrides, for the log */
-    const double *samples;  /* of a csv input, one a tick */
-    size_t sample_count;
+    csv_samples samples;
     const volatile int *stop;  /* set by a signal: the run ends at zero volts */
     const volatile int *rearm; /* counts requests to clear faults and arm again */
     void (*started)(
