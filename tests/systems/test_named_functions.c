@@ -55,7 +55,8 @@ static void test_what_a_system_with_a_motor_has_is_found_by_its_name(void)
         const char *const name = named[i].system->name;
         const mct_scene scene = swing_up_scene(system_called(name));
         mct_controller controller;
-        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &scene, NULL));
+        mct_constants constants;
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_controller_init(&controller, &constants, &scene, NULL));
         TEST_ASSERT_TRUE_MESSAGE(named[i].system->actuation->accelerate == named[i].accelerate, name);
         TEST_ASSERT_TRUE_MESSAGE(named[i].system->actuation->motor == named[i].motor, name);
         TEST_ASSERT_TRUE_MESSAGE(controller.swing_up == named[i].swing_up, name);
