@@ -2,10 +2,10 @@
  * SysTick as the loop's clock, on the emulated board. Prints a line for each figure: its name, the number in decimal. The
  * timer of mps2.h, which is another one, says how long things took: 25 counts a microsecond, as the core.
  */
+#include "hal/cortex_m/systick.h"
 #include "hal/clock.h"
 #include "hal/cortex_m/mps2.h"
 #include "hal/cortex_m/semihosting.h"
-#include "hal/cortex_m/systick.h"
 
 enum { CORE_MHZ = 25, TICKS = 1000, LOOKS = 20000, LEAP_US = 20 };
 #define TICK 0.001

@@ -1,6 +1,6 @@
 #include "board.h"
 
-#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/processor.h"
 #include "hal/cortex_m/start.h"
 #include "registers.h"
 
