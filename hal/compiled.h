@@ -17,6 +17,7 @@
 #define MCTAU_HAL_COMPILED_H
 
 #include "hal/sim/sim.h"
+#include "hal/socketcan/can.h"
 #include "mctau/loop.h"
 
 /** Estimator, controller, supervisor, or an open-loop input. `hal` is for the program to fill in, and a ring, if any. */
@@ -25,7 +26,13 @@ extern const mct_loop mct_compiled_loop;
 /** The scene's mechanism with its sensors, in lockstep: mct_sim_hal() of a copy. */
 extern const mct_sim mct_compiled_sim;
 
-/** The scene itself, for what is prepared when a program starts, such as mct_can_init(). 6 kB of flash when used. */
+/**
+ * The HAL over CAN, as the scene's [can] describes it: `transport` is for the program to fill in. Reads
+ * mct_compiled_scene. Not there for a scene that suits no bus; the file then says why.
+ */
+extern const mct_can mct_compiled_can;
+
+/** The scene itself, for what is prepared when a program starts. 6 kB of flash when used. */
 extern const union mct_compiled_scene {
     uint64_t words[(sizeof(mct_scene) + 7) / 8];
     mct_scene scene;

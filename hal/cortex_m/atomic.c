@@ -2,7 +2,7 @@
  * What gcc calls to store or load 64 bits at once (the counters of hal.h, the ring of record.h), which a Cortex-M has
  * no instruction for: no interrupt comes between the halves. With one core, every order of memory is kept.
  */
-#include "interrupts.h"
+#include "processor.h"
 
 uint64_t __atomic_load_8(const volatile void *place, int order);
 void __atomic_store_8(volatile void *place, uint64_t value, int order);

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "hal/clock.h"
-#include "interrupts.h"
+#include "processor.h"
 
 #define SYST_CSR (*(volatile uint32_t *)0xE000E010) /* SysTick's control and status, */
 #define SYST_RVR (*(volatile uint32_t *)0xE000E014) /* reload value, */

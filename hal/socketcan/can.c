@@ -337,6 +337,7 @@ static void plan(mct_can *self)
     mct_can_report *report = &self->report;
     double nominal = 0;
     double stuffed = 0;
+    memset(report, 0, sizeof *report);
     for (int i = 0; i < self->axes.count; i++) {
         const mct_can_axis *axis = &self->axes.axes[i];
         for (int j = 0; j < protocol->message_count; j++) {
@@ -649,6 +650,7 @@ static mct_status can_open(void *context, mct_message *why)
     mct_can_filter filters[MCT_CAN_MAX_FILTERS];
     mct_message_clear(&reason);
     self->stopped = true;
+    plan(self); /* afresh, whatever an attempt before has heard */
     mct_status status = self->transport.ops->open(self->transport.context, filters,
                                                   list_filters(self, filters), &self->counts, &reason);
     if (status == MCT_OK) {

@@ -7,12 +7,16 @@
 
 #include "hal/compiled.h"
 
+#pragma weak mct_compiled_can /* a scene may have none */
+
 enum { TICKS = 3000, LONGEST_TEXT = 1 << 16, MOST_OVERRIDES = 16 };
 
 static mct_scene scene;
 static mct_plan plan;
 static mct_loop made_loop, compiled_loop;
 static mct_sim made_sim, compiled_sim;
+static mct_can made_can;
+static bool has_can;
 
 static int fail(const char *what, const char *why)
 {
@@ -37,7 +41,35 @@ static int read_scene(int count, char **assignments)
             MCT_OK) {
         return fail("init", why.text);
     }
+    has_can = mct_can_init(&made_can, &scene, (mct_can_transport){NULL, NULL}, false, &why) == MCT_OK;
     return 0;
+}
+
+/* What its open makes anew is left out, and pointers but for the protocol. */
+static void forget_for_can(mct_can *can)
+{
+    memset(&can->report, 0, sizeof can->report);
+    can->scene = NULL;
+    for (int i = 0; i < can->axes.count; i++) {
+        can->axes.axes[i].scene = NULL;
+    }
+}
+
+static int compare_can(void)
+{
+    static mct_can cans[2];
+    if (has_can != (&mct_compiled_can != NULL)) {
+        return fail("mct_compiled_can", has_can ? "is not there" : "is there");
+    }
+    if (!has_can) {
+        return 0;
+    }
+    memcpy(&cans[0], &made_can, sizeof made_can);
+    memcpy(&cans[1], &mct_compiled_can, sizeof made_can);
+    forget_for_can(&cans[0]);
+    forget_for_can(&cans[1]);
+    return memcmp(&cans[0], &cans[1], sizeof cans[0]) == 0 ? 0
+                                                           : fail("mct_compiled_can", "differs from mct_can_init");
 }
 
 /* What a tick reads by way of them is compared by running. */
@@ -99,5 +131,6 @@ int main(int argc, char **argv)
 {
     int failed = read_scene(argc - 1, argv + 1);
     failed = failed ? failed : compare_structs();
+    failed = failed ? failed : compare_can();
     return failed ? failed : compare_runs();
 }

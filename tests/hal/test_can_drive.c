@@ -385,7 +385,7 @@ static void test_a_native_drive_has_the_watchdog_that_it_is_told(void)
     drive_on(5, 1);
     ticks(5000);
     TEST_ASSERT_TRUE(is_driven());
-    host.axes[0].scene = &other;
+    host.axes[0].watchdog_ms = mct_can_watchdog_ms(other.can_watchdog);
     drive_on(5, 1);
     ticks(48);
     TEST_ASSERT_TRUE(is_driven());

@@ -10,6 +10,7 @@
 #include "runner_compile.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
+#include "runner_import.h"
 #include "runner_ledger.h"
 #include "runner_replay.h"
 #include "runner_run.h"
@@ -142,6 +143,7 @@ const mct_runner MCT_RUNNER = {
     .depart = runner_depart,
     .time_scale = runner_time_scale,
     .compile = runner_compile,
+    .import = runner_import,
     .hard_case_after = hard_case_after,
     .hard_run_case = hard_run_case,
     .hard_judge = hard_judge,

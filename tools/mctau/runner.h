@@ -159,6 +159,11 @@ typedef struct {
     double recorded, replayed;
 } replay_result;
 
+typedef struct {
+    uint64_t ticks;
+    uint64_t left_over; /* bytes behind the last whole record */
+} import_result;
+
 /* A virtual drive on a CAN interface. */
 typedef struct {
     const char *interface;
@@ -260,6 +265,9 @@ typedef struct {
     /* The scene's structs as C text: see runner_compile.h. */
     mct_status (*compile)(const mct_scene *scene, const run_options *options, csv_output *out,
                           mct_message *why);
+    /* An image's records into an event log: see runner_import.h. */
+    mct_status (*import)(const mct_scene *scene, const char *records, const run_options *options,
+                         import_result *result, mct_message *why);
     /* Hard cases: see tools/hard/hard.h. */
     const hard_case *(*hard_case_after)(int number);
     void (*hard_run_case)(const hard_case *about, bool is_full, hard_result results[HARD_METHOD_COUNT]);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "hal/sim/sim.h"
+#include "hal/socketcan/can.h"
 #include "mctau/loop.h"
 
 enum { DEEPEST = 8 };
@@ -443,6 +444,78 @@ static void put_sim(text *self, const mct_sim *from, const char *kernel)
     put(self, "};\n");
 }
 
+/* --- the HAL over CAN --- */
+
+static void put_can_motor(text *self, const mct_can_motor *from)
+{
+    begin(self, "motor");
+    DOUBLE(supply);
+    DOUBLE(resistance);
+    DOUBLE(torque_per_ampere);
+    DOUBLE(emf_per_turn);
+    FLAG(inverted);
+    end(self);
+}
+
+static void put_can_encoder(text *self, const mct_can_encoder *from, int number)
+{
+    char name[32];
+    snprintf(name, sizeof name, "encoders[%d]", number);
+    begin(self, name);
+    FLAG(used);
+    INTEGER(coordinate);
+    DOUBLE(counts_per_turn);
+    end(self);
+}
+
+static void put_can_axis(text *self, const mct_can_axis *from, const char *protocol, int number)
+{
+    char name[32];
+    snprintf(name, sizeof name, "axes[%d]", number);
+    begin(self, name);
+    put_text(self, "protocol", protocol);
+    put_text(self, "scene", "&mct_compiled_scene.scene");
+    INTEGER(node);
+    MASK(roles);
+    INTEGER(watchdog_ms);
+    put_can_motor(self, &from->motor);
+    for (int i = 0; i < MCT_CAN_ENCODERS; i++) {
+        put_can_encoder(self, &from->encoders[i], i);
+    }
+    end(self);
+}
+
+static void put_can(text *self, const mct_scene *scene)
+{
+    mct_message why;
+    mct_can *from = malloc(sizeof *from);
+    mct_message_clear(&why);
+    if (from == NULL || mct_can_init(from, scene, (mct_can_transport){NULL, NULL}, false, &why) != MCT_OK) {
+        put(self, "\n/* No mct_compiled_can: %.400s. */\n", from == NULL ? "no memory" : why.text);
+        free(from);
+        return;
+    }
+    const mct_can_protocol *spoken = from->axes.protocol;
+    char protocol[64];
+    snprintf(protocol, sizeof protocol, "&mct_can_%s",
+             spoken == &mct_can_odrive_0_5 ? "odrive_0_5" : spoken->name);
+    put(self, "\nconst mct_can mct_compiled_can = {\n");
+    self->depth = 1;
+    put_text(self, "scene", "&mct_compiled_scene.scene");
+    DOUBLE(dt);
+    INTEGER(tick_us);
+    INTEGER(encoder_count);
+    begin(self, "axes");
+    put_text(self, "protocol", protocol);
+    put_integer(self, "count", from->axes.count);
+    for (int i = 0; i < from->axes.count; i++) {
+        put_can_axis(self, &from->axes.axes[i], protocol, i);
+    }
+    end(self);
+    put(self, "};\n");
+    free(from);
+}
+
 /* --- all of it --- */
 
 /* As words of a pair each, for what is 8 bytes long may not lie across two. */
@@ -485,6 +558,7 @@ mct_status runner_compile(const mct_scene *scene, const run_options *options, cs
         put_system(&whole, plant->system, scene->stride > 1);
         put_loop(&whole, loop);
         put_sim(&whole, sim, kernel);
+        put_can(&whole, &compiled);
         put_scene(&whole, &compiled);
         put(&whole, "\nconst uint64_t mct_compiled_ticks = %" PRIu64 ";\n",
             (uint64_t)(scene->duration / scene->dt + 0.5));

@@ -1,6 +1,6 @@
 #include "board.h"
 
-#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/processor.h"
 #include "hal/cortex_m/start.h"
 #include "registers.h"
 
@@ -53,7 +53,7 @@ static bool start_clock(void)
 
 enum { AHB1ENR_GPIOA = 1 << 0, AHB1ENR_GPIOD = 1 << 3, APB1ENR_CAN1 = 1 << 25 };
 enum { CAN_RX = 0, CAN_TX = 1, LED_WELL = 12, LED_TICK = 13, BUTTON = 0 };
-enum { MODE_OUTPUT = 1, MODE_ALTERNATE = 2, FUNCTION_CAN = 9 };
+enum { MODE_OUTPUT = 1, MODE_ALTERNATE = 2, FUNCTION_CAN = 9, SPEED_HIGH = 2 };
 enum { CAN1_TX_IRQ = 19, CAN1_RX0_IRQ = 20 };
 
 static uint32_t with_mode(uint32_t modes, int pin, uint32_t mode)
@@ -67,6 +67,7 @@ static void start_pins(void)
     RCC_APB1ENR |= APB1ENR_CAN1;
     (void)RCC_APB1ENR; /* the clock is on two cycles later: errata sheet ES0182, delay after an enable */
     GPIOD_AFRL |= FUNCTION_CAN << (4 * CAN_RX) | FUNCTION_CAN << (4 * CAN_TX);
+    GPIOD_OSPEEDR |= SPEED_HIGH << (2 * CAN_TX);
     uint32_t modes = GPIOD_MODER;
     modes = with_mode(modes, CAN_RX, MODE_ALTERNATE);
     modes = with_mode(modes, CAN_TX, MODE_ALTERNATE);

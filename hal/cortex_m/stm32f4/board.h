@@ -26,7 +26,7 @@ bool mct_board_button(void);
 
 /**
  * Starts the independent watchdog, which nothing stops any more: without being fed it resets the chip.
- * @param least_us  after this time at the earliest, at 3.6 times of it at the latest: its oscillator has 17 to 47 kHz
+ * @param least_us  after this time at the earliest, nearly three times of it at the latest: its oscillator has 17 to 47 kHz
  * @return false where it is too long, or does not start
  */
 bool mct_board_watchdog_start(uint32_t least_us);

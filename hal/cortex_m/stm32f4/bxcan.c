@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "bit_timing.h"
-#include "hal/cortex_m/interrupts.h"
+#include "hal/cortex_m/processor.h"
 #include "hal/socketcan/filter.h"
 
 /* RM0090, 32.9.2 to 32.9.4 */
@@ -49,8 +49,8 @@ static void fill_mailbox(mct_bxcan *self, int mailbox, const mct_can_frame *fram
     self->registers->mailboxes[mailbox].TDTR = frame->length;
     self->registers->mailboxes[mailbox].TDLR = word_of(frame->data);
     self->registers->mailboxes[mailbox].TDHR = word_of(frame->data + 4);
-    self->registers->mailboxes[mailbox].TIR =
-        identifier_register(frame->id, frame->extended) | remote | IR_TXRQ;
+    mct_command(&self->registers->mailboxes[mailbox].TIR,
+                identifier_register(frame->id, frame->extended) | remote | IR_TXRQ);
 }
 
 static bool is_empty(const mct_bxcan *self, int mailbox)
@@ -65,8 +65,7 @@ static void note_sent(mct_bxcan *self)
         const uint32_t status = self->registers->TSR >> (TSR_NEXT * i);
         if (status & TSR_RQCP0) {
             self->confirmed += (status & TSR_TXOK0) != 0;
-            self->registers->TSR = (uint32_t)TSR_RQCP0
-                                   << (TSR_NEXT * i); /* clears the mailbox's other flags, too */
+            mct_command(&self->registers->TSR, (uint32_t)TSR_RQCP0 << (TSR_NEXT * i)); /* and TXOK with it */
         }
     }
 }
@@ -109,7 +108,7 @@ static void take_back(mct_bxcan *self)
 {
     const uint32_t before = mct_interrupts_hold();
     self->waiting = 0;
-    self->registers->TSR = TSR_ABRQ0 | TSR_ABRQ0 << TSR_NEXT | TSR_ABRQ0 << 2 * TSR_NEXT;
+    mct_command(&self->registers->TSR, TSR_ABRQ0 | TSR_ABRQ0 << TSR_NEXT | TSR_ABRQ0 << 2 * TSR_NEXT);
     mct_interrupts_restore(before);
 }
 
@@ -155,7 +154,7 @@ static void receive_one(mct_bxcan *self)
         frame->time_us = self->now_us();
         __atomic_store_n(&self->received, self->received + 1, __ATOMIC_RELEASE);
     }
-    self->registers->RF0R = RF0R_RFOM0;
+    mct_command(&self->registers->RF0R, RF0R_RFOM0);
 }
 
 void mct_bxcan_interrupt(mct_bxcan *self)
@@ -163,7 +162,7 @@ void mct_bxcan_interrupt(mct_bxcan *self)
     const uint32_t fifo = self->registers->RF0R;
     if (fifo & RF0R_FOVR0) {
         self->overflowed++;
-        self->registers->RF0R = RF0R_FOVR0;
+        mct_command(&self->registers->RF0R, RF0R_FOVR0);
     }
     if (fifo & RF0R_FMP0) {
         receive_one(self);
@@ -237,7 +236,7 @@ static void look_for_errors(mct_bxcan *self, uint32_t status)
         mct_can_counted(self->counts, MCT_CAN_COUNT_ERROR_PASSIVE);
     }
     self->passive = passive;
-    self->registers->ESR = LEC_SET_BY_SOFTWARE << ESR_LEC_SHIFT;
+    mct_command(&self->registers->ESR, LEC_SET_BY_SOFTWARE << ESR_LEC_SHIFT);
 }
 
 static void lose(mct_bxcan *self)
@@ -249,7 +248,8 @@ static void lose(mct_bxcan *self)
     mct_hal_count(&self->counts->values[MCT_CAN_COUNT_SKIPPED], received - self->taken);
     __atomic_store_n(&self->taken, received, __ATOMIC_RELEASE);
     self->state = MCT_CAN_BUS_OFF;
-    self->registers->MCR |= MCR_INRQ; /* into initialization mode and out of it: 32.7.6, bus-off recovery */
+    /* Into initialization mode and out of it: 32.7.6, bus-off recovery. */
+    mct_command(&self->registers->MCR, self->registers->MCR | MCR_INRQ);
 }
 
 static mct_can_link_state bxcan_tend(void *context)
@@ -266,7 +266,7 @@ static mct_can_link_state bxcan_tend(void *context)
             take_back(self);
         }
     } else if (self->registers->MSR & MSR_INAK) {
-        self->registers->MCR &= ~(uint32_t)MCR_INRQ;
+        mct_command(&self->registers->MCR, self->registers->MCR & ~(uint32_t)MCR_INRQ);
     } else if (!(self->registers->MCR & MCR_INRQ) && !(status & ESR_BOFF)) {
         mct_can_counted(self->counts, MCT_CAN_COUNT_LINK_BACK);
         self->state = MCT_CAN_UP;
@@ -282,7 +282,7 @@ static bool initialize(mct_bxcan *self, bool on)
 {
     const int64_t begin = self->now_us();
     const uint32_t wanted = on ? MSR_INAK : 0;
-    self->registers->MCR = MCR_TXFP | (on ? MCR_INRQ : 0); /* frames go out in their order; no sleep */
+    mct_command(&self->registers->MCR, MCR_TXFP | (on ? MCR_INRQ : 0)); /* in their order; no sleep */
     while ((self->registers->MSR & MSR_INAK) != wanted && self->now_us() - begin < PATIENCE_US) {
     }
     return (self->registers->MSR & MSR_INAK) == wanted;

@@ -1,16 +1,15 @@
 /*
- * The controller on a board with a CAN peripheral: estimator, control, supervisor and HAL over CAN in one image, the
- * scene compiled into it. A worked skeleton. NOT RUN ON HARDWARE. See docs/porting.md.
+ * The controller on a board with a CAN peripheral: estimator, control, supervisor and HAL over CAN in one image, with a
+ * scene as `mctau compile` writes it. A worked skeleton. NOT RUN ON HARDWARE. See docs/porting.md.
  *
  * It never drives of itself after a reset: the loop runs at zero volts until the button is pressed, which also clears
  * faults. (controller.rearm_after in the scene arms without a button; leave it 0.)
  */
 #include "board.h"
 #include "bxcan.h"
-#include "hal/cortex_m/start.h"
+#include "hal/compiled.h"
 #include "hal/cortex_m/systick.h"
 #include "registers.h"
-#include "scene.h"
 
 enum { EXIT_NO_CLOCK = 2, EXIT_NO_TICK, EXIT_NO_CAN, EXIT_NO_WATCHDOG };
 enum { TICKS_WITHOUT_FEEDING = 10, PAUSE_US = 500000 };
@@ -44,7 +43,7 @@ static mct_hal open_hal(void)
 {
     bool is_lit = false;
     for (;;) {
-        can = mct_scene_can;
+        can = mct_compiled_can;
         can.transport = mct_bxcan_transport(&bus);
         const mct_hal hal = mct_can_hal(&can);
         mct_message_clear(&why);
@@ -69,17 +68,17 @@ int main(void)
     if (!mct_board_start()) {
         return EXIT_NO_CLOCK;
     }
-    if (mct_systick_start(MCT_BOARD_CORE_MHZ, mct_scene_can.dt) != MCT_OK) {
+    if (mct_systick_start(MCT_BOARD_CORE_MHZ, mct_compiled_can.dt) != MCT_OK) {
         return EXIT_NO_TICK;
     }
     bus = (mct_bxcan){.registers = (mct_bxcan_registers *)CAN1_BASE,
                       .clock_hz = MCT_BOARD_CAN_HZ,
-                      .bitrate = (uint32_t)mct_scene_can.scene->can_bitrate,
+                      .bitrate = (uint32_t)mct_compiled_scene.scene.can_bitrate,
                       .now_us = mct_systick_us};
     if (!mct_bxcan_self_test(&bus, &why)) {
         return EXIT_NO_CAN;
     }
-    loop = mct_scene_loop;
+    loop = mct_compiled_loop;
     loop.hal = open_hal();
     stop();
     if (!mct_board_watchdog_start(TICKS_WITHOUT_FEEDING * can.tick_us)) {

@@ -1,9 +1,11 @@
 /**
- * @file interrupts.h
- * What an interrupt must not come between. Source: ARMv7-M Architecture Reference Manual, B1.4.3 (PRIMASK).
+ * @file processor.h
+ * What C has no words for. A test on the host has its own in their place.
+ *
+ * Source: ARMv7-M Architecture Reference Manual, B1.4.3 (PRIMASK), B1.5.18 (WFI).
  */
-#ifndef MCTAU_HAL_CORTEX_M_INTERRUPTS_H
-#define MCTAU_HAL_CORTEX_M_INTERRUPTS_H
+#ifndef MCTAU_HAL_CORTEX_M_PROCESSOR_H
+#define MCTAU_HAL_CORTEX_M_PROCESSOR_H
 
 #include <stdint.h>
 
@@ -24,6 +26,12 @@ static inline void mct_interrupts_restore(uint32_t before)
 static inline void mct_interrupts_wait(void)
 {
     __asm__ volatile("dsb\n\twfi" ::: "memory");
+}
+
+/** Writes a register whose bits act as they are written. */
+static inline void mct_command(volatile uint32_t *place, uint32_t bits)
+{
+    *place = bits;
 }
 
 #endif
