@@ -6,11 +6,22 @@
 
 #define TURN 6.283185307179586476925
 
-/* Fraction of a turn, in parts of 2^-64. */
+/* What is left without whole turns, in parts of 2^-64. */
 static uint64_t fraction_of(double turns)
 {
-    const double fraction = turns - (double)(int64_t)turns;
-    return (uint64_t)(int64_t)(fraction * 0x1p62) << 2; /* which a double has not more digits for, but below 2^-10 */
+    const double high = (turns - (double)(int64_t)turns) * 0x1p32;
+    const double low = (high - (double)(int64_t)high) * 0x1p32;
+    return ((uint64_t)(int64_t)high << 32) + (uint64_t)(int64_t)low;
+}
+
+/* An angle's, with all of these digits: the product of its first 24 with those of 1 / (2 pi) is exact. */
+static uint64_t phase_of(double angle)
+{
+    const double inverse = 0x1.45f3060000000p-3;
+    const double inverse_rest = 0x1.b9391054a7f0ap-28;
+    const double first = (double)(float)angle;
+    const double rest = first * inverse_rest + (angle - first) / TURN;
+    return fraction_of(first * inverse) + fraction_of(rest);
 }
 
 void mct_input_init(mct_input *input, const mct_scene *scene, mct_samples samples)
@@ -19,7 +30,7 @@ void mct_input_init(mct_input *input, const mct_scene *scene, mct_samples sample
     input->kind = scene->input;
     input->value = (mct_real)scene->input_value;
     input->amplitude = (mct_real)scene->input_amplitude;
-    input->phase_per_tick = fraction_of(scene->input_frequency * scene->dt / TURN);
+    input->phase_per_tick = phase_of(scene->input_frequency * scene->dt);
     input->samples = samples;
     input->step_count = scene->input_times.count;
     for (int i = 0; i < input->step_count; i++) {

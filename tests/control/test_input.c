@@ -58,6 +58,29 @@ static void test_a_sine_begins_upwards_at_its_middle(void)
     }
 }
 
+/*
+ * Its phase wraps without loss. Tolerance: 2^-63 turns a tick; and for three ticks in a row, at any time, roundings of
+ * their sines.
+ */
+static void test_a_sine_goes_on_for_ever(void)
+{
+    static const uint64_t starts[] = {1000000000000, UINT64_MAX - 50};
+    scene.input_value = 0;
+    scene.input_amplitude = 1;
+    scene.input_frequency = 250;
+    start(MCT_INPUT_SINE, (mct_samples){NULL, 0});
+    for (int n = 0; n < 2; n++) {
+        for (uint64_t tick = starts[n]; tick != starts[n] + 100; tick++) {
+            const double rounding = 4 * (double)MCT_REAL_EPSILON;
+            if (n == 0) {
+                const double phase = 0.25 * (double)tick; /* exactly */
+                TEST_ASSERT_DOUBLE_WITHIN(rounding + (double)tick * 6.3 * 0x1p-63, sin(phase), at(tick));
+            }
+            TEST_ASSERT_DOUBLE_WITHIN(3 * rounding, 2 * cos(0.25) * at(tick), at(tick - 1) + at(tick + 1));
+        }
+    }
+}
+
 static void test_a_step_comes_with_the_first_tick_that_is_not_before_it(void)
 {
     static const double times[] = {0.002, 0.0035, 0.005};
@@ -106,6 +129,7 @@ int main(void)
     RUN_TEST(test_without_a_kind_there_is_none);
     RUN_TEST(test_a_constant_is_the_same_at_every_tick);
     RUN_TEST(test_a_sine_begins_upwards_at_its_middle);
+    RUN_TEST(test_a_sine_goes_on_for_ever);
     RUN_TEST(test_a_step_comes_with_the_first_tick_that_is_not_before_it);
     RUN_TEST(test_a_time_that_is_a_tick_but_for_rounding_is_that_tick);
     RUN_TEST(test_samples_are_one_a_tick_and_the_last_is_held);

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "hal/sim/sim.h"
+#include "support/quad.h"
+#include "support/random.h"
 #include "support/scenes.h"
 #include "unity.h"
 
@@ -66,6 +68,59 @@ static void test_counts_are_the_plants_angles_in_counts_since_the_start(void)
         drive(k);
     }
     TEST_ASSERT_TRUE(fabs(mct_plant_value(&sim.plant, 1)) > TURN);
+}
+
+/* A position of both halves of a state and whole turns, in counts. */
+static quad exact_counts(const mct_state *state, int i, quad unit, double turn)
+{
+    return ((quad)state->x[i] + state->c[i]) * unit + (quad)state->turns[i] * turn;
+}
+
+/*
+ * Held against quadruple precision, anywhere: of angles over a million turns, of lengths over kilometres, up to 1e9 counts
+ * each. The count is the nearest whole one, or one of both where the rest is next to a half. Tolerance: some roundings of
+ * the rest, of the counts within a turn or a length to twice the precision in float, and of those to one in double, where the
+ * counts per radian are not known better.
+ */
+static void test_counts_are_exact_to_a_rounding_at_every_width_and_resolution(void)
+{
+    enum { CASES = 200000 };
+    static const double resolutions[] = {4, 4096, 43958, 1e9};
+    const double eps = (double)MCT_REAL_EPSILON;
+    test_random random = {2024};
+    for (int n = 0; n < 4; n++) {
+        for (int i = 0; i < 2; i++) { /* a length and an angle */
+            mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, 0);
+            scene.counts_per_unit[i] = resolutions[n];
+            scene.initial[0] = -0.3;
+            begin(&scene);
+            const quad unit = i == 0 ? (quad)resolutions[n] : resolutions[n] / (2 * (quad)3.14159265358979323846264338327950288L);
+            const double turn = i == 0 ? 0 : resolutions[n];
+            mct_state *state = &sim.plant.state;
+            const quad start = exact_counts(state, i, unit, turn);
+            double worst = 0;
+            for (int k = 0; k < TEST_CASES(CASES); k++) {
+                sim.counter_shift = (uint32_t)random_in(&random, 0, 25);
+                state->x[i] = (mct_real)(i == 0 ? random_in(&random, -1, 1) * random_scale(&random, 1e-6, 2e3)
+                                                : random_in(&random, -TURN, TURN));
+                state->c[i] = (mct_real)(random_in(&random, -0.5, 0.5) * eps) * state->x[i];
+                state->turns[i] = i == 0 ? 0 : (int32_t)random_in(&random, -1e6, 1e6);
+                const quad within = (quad)state->x[i] * unit;
+                const quad exact = exact_counts(state, i, unit, turn) - start;
+                const int64_t whole = (int64_t)(exact < 0 ? exact - (quad)0.5 : exact + (quad)0.5);
+                const int32_t counts = read_once().counts[i];
+                /* the shown bits stand for the count that is nearest */
+                const uint32_t off = ((uint32_t)counts - (uint32_t)(uint64_t)whole) << sim.counter_shift;
+                const int32_t by = (int32_t)off / (int32_t)(UINT32_C(1) << sim.counter_shift);
+                const double error = (double)quad_abs((quad)(whole + by) - exact) - 0.5;
+                const double size = (double)quad_abs(within);
+                const double allowed = 4 * eps + 8 * size * (MCT_REAL_IS_FLOAT ? eps * eps : eps);
+                TEST_ASSERT_TRUE(error <= allowed);
+                worst = fmax(worst, error);
+            }
+            printf("%s, %g counts: at most half a count and %.1e\n", i == 0 ? "length" : "angle", resolutions[n], worst);
+        }
+    }
 }
 
 static void test_a_narrow_counter_shows_the_low_bits_of_a_wide_one(void)
@@ -262,6 +317,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_counts_are_the_plants_angles_in_counts_since_the_start);
+    RUN_TEST(test_counts_are_exact_to_a_rounding_at_every_width_and_resolution);
     RUN_TEST(test_a_narrow_counter_shows_the_low_bits_of_a_wide_one);
     RUN_TEST(test_a_cart_counts_by_the_metre);
     RUN_TEST(test_noise_has_its_statistics_and_no_memory);
