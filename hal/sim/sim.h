@@ -17,7 +17,7 @@
 
 /** Numbers of counts are in two parts, so that float has them to twice its digits. */
 typedef struct {
-    int32_t turn_counts; /**< per turn of an angle, 0 for a length */
+    int32_t turn_counts;             /**< per turn of an angle, 0 for a length */
     mct_real unit_counts, unit_rest; /**< per radian or metre: rounded, and what that leaves out */
     uint32_t start_counts;           /**< at the initial position: whole ones, modulo 2^32, */
     mct_real start_rest;             /**< and the rest */
@@ -33,12 +33,13 @@ typedef struct {
     uint32_t counter_shift; /**< 32 - bits of the counters */
     uint32_t latency;       /**< [ticks] */
     uint32_t tick_us;
-    int32_t fault;                          /**< MCT_SENSOR_FAULT_... */
-    uint64_t fault_begin, fault_end;        /**< [ticks] */
-    mct_reading queue[MCT_MAX_LATENCY + 1]; /**< readings of the last ticks, one after the other, round and round */
-    int32_t newest;                         /**< place of the present tick's */
-    mct_reading last;                       /**< last delivered */
-    uint32_t silent_ticks;                  /**< since something was delivered */
+    int32_t fault;                   /**< MCT_SENSOR_FAULT_... */
+    uint64_t fault_begin, fault_end; /**< [ticks] */
+    mct_reading
+        queue[MCT_MAX_LATENCY + 1]; /**< readings of the last ticks, one after the other, round and round */
+    int32_t newest;                 /**< place of the present tick's */
+    mct_reading last;               /**< last delivered */
+    uint32_t silent_ticks;          /**< since something was delivered */
     /* motor driver */
     mct_real input; /**< held until the next write */
     /* clock */

@@ -135,7 +135,8 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
         mct_encoder_track *track = &observer->encoders[i];
         const mct_real model_moved = h * observer->x[N + i] + MCT_R(0.5) * h * h * a[i];
         mct_real rate = observer->x[N + i] + h * a[i];
-        mct_real deviation = track->deviation - model_moved; /* when the count stood still: the model goes on alone */
+        mct_real deviation =
+            track->deviation - model_moved; /* when the count stood still: the model goes on alone */
         observer->correction[i] = 0;
         if (valid) {
             const int32_t moved = counts_moved(track, reading->counts[i], observer->counter_shift);

@@ -37,8 +37,8 @@ extern const mct_system mct_block;
 extern const mct_system mct_falling_sphere;
 
 /* What a tick reaches through these descriptors: found from outside by its name, mct_SYSTEM_MEMBER, as kernels are. */
-void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
-                              mct_real u, mct_real *a);
+void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s,
+                              mct_real c, mct_real u, mct_real *a);
 void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s,
                                    mct_real c, mct_real u, mct_real *a);
 const mct_motor *mct_cart_pole_motor(const void *constants);
@@ -57,7 +57,7 @@ void mct_solid_pendulum_motion(const void *constants, uint32_t effects, const mc
                                mct_motion *motion);
 
 /* The input under which, by mct_cart_pole_accelerate, the cart has an acceleration. */
-mct_real mct_cart_pole_input_for(const mct_cart_pole_constants *constants, uint32_t effects, const mct_real *x,
-                                 mct_real s, mct_real c, mct_real acceleration);
+mct_real mct_cart_pole_input_for(const mct_cart_pole_constants *constants, uint32_t effects,
+                                 const mct_real *x, mct_real s, mct_real c, mct_real acceleration);
 
 #endif

@@ -94,7 +94,8 @@ static void test_counts_are_exact_to_a_rounding_at_every_width_and_resolution(vo
             scene.counts_per_unit[i] = resolutions[n];
             scene.initial[0] = -0.3;
             begin(&scene);
-            const quad unit = i == 0 ? (quad)resolutions[n] : resolutions[n] / (2 * (quad)3.14159265358979323846264338327950288L);
+            const quad unit = i == 0 ? (quad)resolutions[n]
+                                     : resolutions[n] / (2 * (quad)3.14159265358979323846264338327950288L);
             const double turn = i == 0 ? 0 : resolutions[n];
             mct_state *state = &sim.plant.state;
             const quad start = exact_counts(state, i, unit, turn);
@@ -118,7 +119,8 @@ static void test_counts_are_exact_to_a_rounding_at_every_width_and_resolution(vo
                 TEST_ASSERT_TRUE(error <= allowed);
                 worst = fmax(worst, error);
             }
-            printf("%s, %g counts: at most half a count and %.1e\n", i == 0 ? "length" : "angle", resolutions[n], worst);
+            printf("%s, %g counts: at most half a count and %.1e\n", i == 0 ? "length" : "angle",
+                   resolutions[n], worst);
         }
     }
 }

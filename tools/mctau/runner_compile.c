@@ -544,9 +544,9 @@ mct_status runner_compile(const mct_scene *scene, const run_options *options, cs
     mct_status status = MCT_ERROR_IO;
     if (sim != NULL && loop != NULL && plan != NULL) {
         status = mct_sim_init(sim, &compiled, why);
-        status = status != MCT_OK
-                     ? status
-                     : mct_loop_init(loop, plan, &compiled, (mct_hal){NULL, NULL}, NULL, RUNNER_SAMPLES(options), why);
+        status = status != MCT_OK ? status
+                                  : mct_loop_init(loop, plan, &compiled, (mct_hal){NULL, NULL}, NULL,
+                                                  RUNNER_SAMPLES(options), why);
     }
     if (status == MCT_OK) {
         const mct_plant *plant = &sim->plant;

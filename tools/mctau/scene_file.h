@@ -14,7 +14,7 @@ typedef struct {
     const char *path;       /* as given; "-" is stdin */
     char *text; /* the file's text, and a line "#!set table.key=value" for each override: what a log keeps */
     csv_samples samples; /* none without */
-    char *samples_path; /* where they came from */
+    char *samples_path;  /* where they came from */
     mct_scene scene;
     const mct_runner *runner; /* of the scene's precision */
 } scene_file;
