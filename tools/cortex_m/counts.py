@@ -76,11 +76,16 @@ def _compile_here(program, precision, sources, build):
     output(["cc", *options, *includes, *files, library, "-lpthread", "-lrt", "-o", program])
 
 
+def build_folder(target):
+    folder = ROOT / "build" / f"cortex-{TARGETS[target]}"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
 def build_target(target, name):
     """Path of an image of hal/cortex_m/CMakeLists.txt, built anew where it is old."""
     kind = TARGETS[target]
-    folder = ROOT / "build" / f"cortex-{kind}"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = build_folder(target)
     with open(folder / ".lock", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # two at once would build one folder
         if not (folder / "build.ninja").exists():
