@@ -334,7 +334,7 @@ static void test_registers_lie_where_the_manual_says(void)
 
 static void test_open_goes_onto_the_bus_with_the_timing_of_its_bitrate(void)
 {
-    mct_bit_timing timing;
+    mct_bit_timing timing = {0};
     open_well();
     TEST_ASSERT_TRUE(mct_bit_timing_find(42000000, 1000000, &timing));
     TEST_ASSERT_EQUAL_HEX32(mct_bit_timing_register(&timing), registers.BTR);
