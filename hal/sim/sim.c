@@ -2,9 +2,34 @@
 
 #include <string.h>
 
+#include "mctau/compensated.h"
 #include "mctau/mix.h"
 
 #define TURN 6.283185307179586476925
+
+/* Takes out whole counts, modulo 2^32, and leaves less than one. Without 64-bit integers, for numbers below 2^62. */
+static uint32_t take_whole(mct_real *counts)
+{
+    const mct_real half_range = MCT_R(0x1p31);
+    const int32_t high = (int32_t)(*counts / half_range);
+    const mct_real low = *counts - (mct_real)high * half_range;
+    const int32_t whole = (int32_t)low;
+    *counts = low - (mct_real)whole;
+    return ((uint32_t)high << 31) + (uint32_t)whole;
+}
+
+/* A coordinate in counts: whole ones, modulo 2^32, and the rest. Both halves of the state go in. */
+static uint32_t counts_of(const mct_sim *sim, int i, mct_real *rest)
+{
+    const mct_sim_encoder *encoder = &sim->encoders[i];
+    const mct_state *state = &sim->plant.state;
+    mct_real error;
+    mct_real product = mct_two_product(state->x[i], encoder->unit_counts, &error);
+    const uint32_t whole = take_whole(&product);
+    const mct_real small = state->x[i] * encoder->unit_rest + state->c[i] * encoder->unit_counts;
+    *rest = product + (error + small);
+    return whole + (uint32_t)state->turns[i] * (uint32_t)encoder->turn_counts;
+}
 
 mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why)
 {
@@ -19,11 +44,15 @@ mct_status mct_sim_init(mct_sim *sim, const mct_scene *scene, mct_message *why)
     for (int i = 0; i < mct_encoder_count(system); i++) {
         const double counts = scene->counts_per_unit[i];
         const bool angle = system->coordinates[i].is_angle;
-        sim->turn_counts[i] = angle ? (double)(int64_t)(counts + 0.5) : 0;
-        sim->unit_counts[i] = angle ? sim->turn_counts[i] / TURN : counts;
-        sim->start_counts[i] = scene->initial[i] * sim->unit_counts[i];
+        mct_sim_encoder *encoder = &sim->encoders[i];
+        encoder->turn_counts = angle ? (int32_t)(counts + 0.5) : 0;
+        const double unit = angle ? encoder->turn_counts / TURN : counts;
+        encoder->unit_counts = (mct_real)unit;
+        encoder->unit_rest = (mct_real)(unit - (double)encoder->unit_counts);
+        encoder->start_counts = counts_of(sim, i, &encoder->start_rest);
     }
-    sim->noise = scene->noise;
+    sim->encoder_count = mct_encoder_count(system);
+    sim->noise = (mct_real)scene->noise;
     sim->seed = (uint32_t)scene->sensor_seed;
     sim->counter_shift = (uint32_t)(32 - scene->counter_bits);
     sim->latency = (uint32_t)scene->latency;
@@ -43,33 +72,26 @@ static uint64_t hash(uint64_t seed, uint64_t tick, uint64_t encoder)
 }
 
 /* Nearly normal, standard deviation 1: the sum of four uniform numbers of 16 bits. */
-static double nearly_normal(uint64_t bits)
+static mct_real nearly_normal(uint64_t bits)
 {
-    const int64_t sum =
-        (int64_t)((bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48));
-    return (double)(sum - 2 * 65535) * 2.6429e-5; /* 1 / sqrt(4 * 65536^2 / 12) */
+    const int32_t sum =
+        (int32_t)((bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48));
+    return (mct_real)(sum - 2 * 65535) * MCT_R(2.6429e-5); /* 1 / sqrt(4 * 65536^2 / 12) */
 }
 
-static int64_t rounded(double value)
-{
-    return (int64_t)(value < 0 ? value - 0.5 : value + 0.5);
-}
-
-/* Encoder counters of the present state. */
+/* Encoder counters of the present state. They wrap as hardware's do. */
 static void sense(const mct_sim *sim, mct_reading *reading)
 {
-    const mct_plant *plant = &sim->plant;
-    const mct_state *state = &plant->state;
     memset(reading, 0, sizeof *reading);
-    for (int i = 0; i < mct_encoder_count(plant->system); i++) {
-        double counts =
-            ((double)state->x[i] + (double)state->c[i]) * sim->unit_counts[i] - sim->start_counts[i];
+    for (int i = 0; i < sim->encoder_count; i++) {
+        mct_real rest;
+        const uint32_t whole = counts_of(sim, i, &rest) - sim->encoders[i].start_counts;
+        rest -= sim->encoders[i].start_rest;
         if (sim->noise > 0) {
-            counts += sim->noise * nearly_normal(hash(sim->seed, plant->tick, (uint64_t)i));
+            rest += sim->noise * nearly_normal(hash(sim->seed, sim->plant.tick, (uint64_t)i));
         }
-        /* Whole turns are added as integers, and the counter wraps as hardware's does. */
-        const int64_t whole = (int64_t)state->turns[i] * (int64_t)sim->turn_counts[i];
-        const uint32_t counter = (uint32_t)(uint64_t)(rounded(counts) + whole) << sim->counter_shift;
+        rest += rest < 0 ? MCT_R(-0.5) : MCT_R(0.5);
+        const uint32_t counter = (whole + take_whole(&rest)) << sim->counter_shift;
         reading->counts[i] = (int32_t)(counter >> sim->counter_shift);
     }
 }
@@ -97,8 +119,9 @@ static mct_status sim_read(void *context, mct_reading *reading)
 {
     mct_sim *sim = context;
     const uint64_t tick = sim->plant.tick;
-    const uint32_t delay = tick < sim->latency ? (uint32_t)tick : sim->latency;
-    sense(sim, &sim->queue[tick % (MCT_MAX_LATENCY + 1)]);
+    const int32_t delay = (int32_t)(tick < sim->latency ? tick : sim->latency);
+    const int32_t before = sim->newest - delay;
+    sense(sim, &sim->queue[sim->newest]);
     if (has_fault(sim, MCT_SENSOR_FAULT_SILENT)) {
         sim->silent_ticks++;
         *reading = sim->last;
@@ -113,7 +136,7 @@ static mct_status sim_read(void *context, mct_reading *reading)
     } else if (has_fault(sim, MCT_SENSOR_FAULT_FROZEN)) {
         *reading = sim->last;
     } else {
-        *reading = sim->queue[(tick - delay) % (MCT_MAX_LATENCY + 1)];
+        *reading = sim->queue[before < 0 ? before + MCT_MAX_LATENCY + 1 : before];
         sim->last = *reading;
     }
     reading->age_us = sim->latency * sim->tick_us;
@@ -131,6 +154,7 @@ static mct_status sim_wait_tick(void *context)
 {
     mct_sim *sim = context;
     mct_plant_step(&sim->plant, sim->input);
+    sim->newest = sim->newest < MCT_MAX_LATENCY ? sim->newest + 1 : 0;
     return sim->realtime ? mct_clock_wait(sim->clock) : MCT_OK;
 }
 

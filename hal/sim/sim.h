@@ -15,20 +15,28 @@
 
 #define MCT_MAX_LATENCY 16 /**< ticks */
 
+/** Numbers of counts are in two parts, so that float has them to twice its digits. */
+typedef struct {
+    int32_t turn_counts; /**< per turn of an angle, 0 for a length */
+    mct_real unit_counts, unit_rest; /**< per radian or metre: rounded, and what that leaves out */
+    uint32_t start_counts;           /**< at the initial position: whole ones, modulo 2^32, */
+    mct_real start_rest;             /**< and the rest */
+} mct_sim_encoder;
+
 typedef struct {
     mct_plant plant;
     /* sensors */
-    double turn_counts[MCT_MAX_ENCODERS];  /**< counts per turn or metre */
-    double unit_counts[MCT_MAX_ENCODERS];  /**< counts per radian or metre */
-    double start_counts[MCT_MAX_ENCODERS]; /**< at the initial position */
-    double noise;                          /**< standard deviation [counts] */
+    mct_sim_encoder encoders[MCT_MAX_ENCODERS];
+    int32_t encoder_count;
+    mct_real noise; /**< standard deviation [counts] */
     uint32_t seed;
     uint32_t counter_shift; /**< 32 - bits of the counters */
     uint32_t latency;       /**< [ticks] */
     uint32_t tick_us;
     int32_t fault;                          /**< MCT_SENSOR_FAULT_... */
     uint64_t fault_begin, fault_end;        /**< [ticks] */
-    mct_reading queue[MCT_MAX_LATENCY + 1]; /**< readings of the last ticks, by tick modulo the size */
+    mct_reading queue[MCT_MAX_LATENCY + 1]; /**< readings of the last ticks, one after the other, round and round */
+    int32_t newest;                         /**< place of the present tick's */
     mct_reading last;                       /**< last delivered */
     uint32_t silent_ticks;                  /**< since something was delivered */
     /* motor driver */

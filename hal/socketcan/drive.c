@@ -83,7 +83,9 @@ static void sense_rates(mct_can_drive *self)
         sim->fault == MCT_SENSOR_FAULT_FROZEN && tick >= sim->fault_begin && tick < sim->fault_end;
     const int n = sim->plant.system->coordinate_count;
     for (int i = 0; i < n; i++) {
-        const double rate = mct_plant_value(&sim->plant, n + i) * sim->unit_counts[i];
+        const mct_sim_encoder *encoder = &sim->encoders[i];
+        const double unit_counts = (double)encoder->unit_counts + (double)encoder->unit_rest;
+        const double rate = mct_plant_value(&sim->plant, n + i) * unit_counts;
         self->rates[tick % SIZE][i] = (double)(int64_t)(rate < 0 ? rate - 0.5 : rate + 0.5);
         if (!frozen && !(self->reading.flags & MCT_READING_NO_COUNTS)) {
             self->rate[i] = self->rates[(tick - late) % SIZE][i];

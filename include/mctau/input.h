@@ -9,7 +9,7 @@
 
 /** Samples of an input of kind "csv", one a tick; caller-owned. The last one is held when they run out. */
 typedef struct {
-    const double *values;
+    const mct_real *values;
     size_t count;
 } mct_samples;
 
@@ -17,7 +17,7 @@ typedef struct {
     int32_t kind;
     mct_real value;
     mct_real amplitude;
-    double phase_per_tick; /**< [rad] */
+    uint64_t phase_per_tick; /**< [2^-64 turns]: it may go on for ever and loses nothing */
     int32_t step_count;
     uint64_t step_ticks[MCT_MAX_LIST]; /**< first tick of each step */
     mct_real step_values[MCT_MAX_LIST];

@@ -22,7 +22,8 @@
 typedef struct {
     int32_t turn;       /**< counts per turn of an angle, 0 for a length */
     int32_t last;       /**< counter at the last tick */
-    int64_t travelled;  /**< counts since the start; of an angle modulo a turn */
+    int32_t travelled;  /**< counts since the start, less whole turns or laps */
+    int32_t laps;       /**< of 2^30 counts each, of a length */
     mct_real unit;      /**< coordinate per count */
     mct_real start;     /**< coordinate where the counter started */
     mct_real deviation; /**< e: measured less model, after correction */
@@ -45,6 +46,7 @@ typedef struct {
     mct_real excess;  /**< gravity acts (1 + excess) times as in the model; learned by the controller */
     mct_real correction[MCT_MAX_ENCODERS]; /**< what the last reading added to the model's acceleration */
     mct_real x[2 * MCT_MAX_ENCODERS];      /**< estimate: coordinates (angles within +-pi), rates */
+    mct_real sine, cosine;                 /**< of the upright coordinate in x */
 } mct_observer;
 
 /**

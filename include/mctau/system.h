@@ -178,9 +178,12 @@ typedef struct {
     int current_limit_parameter; /**< of the drive [A] */
     int resistance_parameter;    /**< of the motor's armature [ohm] */
     int inductance_parameter;    /**< of the motor's armature [H] */
-    /** Accelerations alone, for observers; coulomb is ignored, the motor taken as quasi-static unless off. */
-    void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real input,
-                       mct_real *a);
+    /**
+     * Accelerations alone, for observers; coulomb is ignored, the motor taken as quasi-static unless off. s, c: sine and
+     * cosine of the upright coordinate in x.
+     */
+    void (*accelerate)(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
+                       mct_real input, mct_real *a);
     void (*linearise)(const struct mct_scene *scene, mct_linear_model *model);
     /** The motor among the constants. */
     const mct_motor *(*motor)(const void *constants);

@@ -5,7 +5,6 @@
 #include "../systems/systems.h"
 #include "mctau/matrix.h"
 #include "mctau/riccati.h"
-#include "mctau/sincos.h"
 #include "swing_up.h"
 
 #define LEARNING  MCT_R(0.5) /* fraction of a missed energy by which the next approach aims differently */
@@ -196,8 +195,7 @@ static mct_real pumping(mct_controller *controller, mct_real inertia, mct_real w
     const mct_real *x = controller->observer.x;
     const mct_real angle = x[system->actuation->upright_coordinate];
     const mct_real rate = x[system->coordinate_count + system->actuation->upright_coordinate];
-    mct_real s, c;
-    mct_sincos(angle, &s, &c);
+    const mct_real c = controller->observer.cosine;
     const mct_real direction = power_per_input > controller->still    ? 1
                                : power_per_input < -controller->still ? -1
                                                                       : controller->direction;
@@ -263,19 +261,14 @@ mct_real mct_cart_pole_swing_up(mct_controller *controller)
 {
     const mct_cart_pole_constants *k = &controller->constants->cart_pole;
     const mct_real *x = controller->observer.x;
-    mct_real s, c;
-    mct_sincos(x[1], &s, &c);
+    const mct_real s = controller->observer.sine;
+    const mct_real c = controller->observer.cosine;
     const mct_real pump = pumping(controller, k->inertia, k->weight_moment, -c * x[3]);
     const mct_real wanted =
         kept_on_track(controller, x[0], x[2],
                       controller->swing_acceleration * pump - controller->track_stiffness * x[0] -
                           controller->track_damping * x[2]);
-    mct_real without[MCT_MAX_ENCODERS];
-    mct_real with_one_volt[MCT_MAX_ENCODERS];
-    controller->system->actuation->accelerate(controller->constants, controller->effects, x, 0, without);
-    controller->system->actuation->accelerate(controller->constants, controller->effects, x, 1,
-                                              with_one_volt);
-    return (wanted - without[0]) / (with_one_volt[0] - without[0]);
+    return mct_cart_pole_input_for(k, controller->effects, x, s, c, wanted);
 }
 
 /*
@@ -373,8 +366,7 @@ mct_real mct_controller_update(mct_controller *controller, const mct_reading *re
         return 0;
     }
     const mct_real reach = mct_controller_reach(controller);
-    mct_real s, c;
-    mct_sincos(controller->observer.x[controller->system->actuation->upright_coordinate], &s, &c);
+    const mct_real c = controller->observer.cosine;
     if (controller->mode == MCT_MODE_BALANCE) {
         if (reach > 1 || c < MCT_R(0.8)) {
             controller->mode = MCT_MODE_SWING_UP;

@@ -8,7 +8,10 @@
 #define PI   3.141592653589793238463
 #define TURN (2 * PI)
 
-enum { LONG_GAP = 5 }; /* ticks: by then the voltage is zero */
+enum {
+    LONG_GAP = 5, /* ticks: by then the voltage is zero */
+    LAP = 1 << 30
+};
 
 /* Within +-pi, from within +-(2 pi + pi). */
 static mct_real wrapped(mct_real angle)
@@ -16,6 +19,13 @@ static mct_real wrapped(mct_real angle)
     const mct_real turns = angle > MCT_R(3 * PI) ? MCT_R(2 * TURN) : angle > MCT_R(PI) ? MCT_R(TURN) : 0;
     const mct_real back = angle < MCT_R(-3 * PI) ? MCT_R(2 * TURN) : angle < MCT_R(-PI) ? MCT_R(TURN) : 0;
     return angle - turns + back;
+}
+
+/* What follows from the estimated positions. */
+static void take_sine(mct_observer *observer)
+{
+    const mct_real upright = observer->x[observer->system->actuation->upright_coordinate];
+    mct_sincos(upright, &observer->sine, &observer->cosine);
 }
 
 void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct_constants *constants)
@@ -47,6 +57,7 @@ void mct_observer_init(mct_observer *observer, const mct_scene *scene, const mct
         track->start = (mct_real)start;
         observer->x[i] = angle ? wrapped((mct_real)start) : (mct_real)start;
     }
+    take_sine(observer);
 }
 
 void mct_observer_restart(mct_observer *observer)
@@ -54,11 +65,12 @@ void mct_observer_restart(mct_observer *observer)
     observer->started = false;
     for (int i = 0; i < observer->system->coordinate_count; i++) {
         mct_encoder_track *track = &observer->encoders[i];
-        track->travelled = 0;
+        track->travelled = track->laps = 0;
         track->deviation = 0;
         observer->x[i] = track->turn != 0 ? wrapped(track->start) : track->start;
         observer->x[observer->system->coordinate_count + i] = 0;
     }
+    take_sine(observer);
 }
 
 /* Counts moved since the last tick, modulo the counter's range. */
@@ -68,6 +80,17 @@ static int32_t counts_moved(const mct_encoder_track *track, int32_t counts, uint
     int32_t moved;
     memcpy(&moved, &difference, sizeof moved);
     return shift == 0 ? moved : moved / (int32_t)(1u << shift); /* exact: the low bits are zero */
+}
+
+/* No sum leaves 32 bits: a turn or lap is 2^30 counts at most. */
+static void travel(mct_encoder_track *track, int32_t moved)
+{
+    const int32_t lap = track->turn != 0 ? track->turn : LAP;
+    const int32_t sum = track->travelled + moved % lap;
+    track->travelled = sum % lap;
+    if (track->turn == 0) {
+        track->laps += moved / lap + sum / lap;
+    }
 }
 
 void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct_real input)
@@ -88,12 +111,11 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
     const bool is_back = valid && observer->blind_ticks >= LONG_GAP;
     observer->blind_ticks = valid ? 0 : observer->blind_ticks + 1;
     mct_real a[MCT_MAX_ENCODERS];
-    observer->system->actuation->accelerate(observer->constants, observer->effects, observer->x, input, a);
+    observer->system->actuation->accelerate(observer->constants, observer->effects, observer->x,
+                                            observer->sine, observer->cosine, input, a);
     if (observer->gravity_slope > 0) {
         const int upright = observer->system->actuation->upright_coordinate;
-        mct_real s, c;
-        mct_sincos(observer->x[upright], &s, &c);
-        observer->gravity = observer->gravity_slope * s;
+        observer->gravity = observer->gravity_slope * observer->sine;
         a[upright] += observer->excess * observer->gravity;
     }
     for (int i = 0; i < n; i++) {
@@ -107,10 +129,7 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
         } else {
             const int32_t moved = counts_moved(track, reading->counts[i], observer->counter_shift);
             track->last = reading->counts[i];
-            track->travelled += moved;
-            if (track->turn != 0) {
-                track->travelled %= track->turn;
-            }
+            travel(track, moved);
             const mct_real deviation =
                 is_back ? 0 : track->deviation + ((mct_real)moved * track->unit - model_moved);
             track->deviation = observer->keep * deviation;
@@ -119,8 +138,10 @@ void mct_observer_update(mct_observer *observer, const mct_reading *reading, mct
         }
         track->deviation = mct_settled(track->deviation);
         *rate = mct_settled(*rate);
-        const mct_real measured = track->start + (mct_real)track->travelled * track->unit;
+        const mct_real counts = (mct_real)track->laps * MCT_R(LAP) + (mct_real)track->travelled;
+        const mct_real measured = track->start + counts * track->unit;
         const mct_real position = measured - track->deviation;
         observer->x[i] = track->turn != 0 ? wrapped(position) : position;
     }
+    take_sine(observer);
 }

@@ -163,6 +163,9 @@ static void watch_flags(mct_supervisor *supervisor, uint32_t flags)
         {MCT_READING_RESTARTED, MCT_FAULT_RESTARTED},
         {MCT_READING_ESTOP, MCT_FAULT_ESTOP},
     };
+    if (flags == 0) {
+        return; /* as nearly always */
+    }
     for (size_t i = 0; i < sizeof meanings / sizeof meanings[0]; i++) {
         if (flags & meanings[i].flag) {
             mct_supervisor_fault(supervisor, meanings[i].fault);

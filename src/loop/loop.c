@@ -22,7 +22,10 @@ static void observe_hal(mct_loop *loop, mct_record *record)
     const mct_state *plant = loop->hal.ops->plant(loop->hal.context);
     const mct_timing *timing = loop->hal.ops->timing(loop->hal.context);
     if (plant != NULL) {
-        record->plant = *plant;
+        /* Array by array: as a whole it is too much for a compiler to copy by words. */
+        memcpy(record->plant.x, plant->x, sizeof plant->x);
+        memcpy(record->plant.c, plant->c, sizeof plant->c);
+        memcpy(record->plant.turns, plant->turns, sizeof plant->turns);
     }
     record->late_us = timing->lateness.latest_us;
     if (loop->ring != NULL) {

@@ -53,7 +53,7 @@ static int32_t take_turns(mct_state *state, int i)
     const mct_real sign = x < 0 ? -1 : 1;
     const int32_t turns = (int32_t)(sign * x / turn);
     mct_real left = sign * x;
-    for (int bit = LARGEST; bit >= 0; bit--) {
+    for (int bit = turns == 1 ? 0 : LARGEST; bit >= 0; bit--) { /* nearly always it is one */
         if (turns & (1 << bit)) {
             left -= (mct_real)(1 << bit) * turn;
         }

@@ -557,18 +557,31 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     mct_motor_powers(&k->motor, effects, u, pd, out);
 }
 
-void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
-                              mct_real *a)
+MCT_INLINE void accelerate_at(const constants_t *k, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
+                              mct_real u, mct_real *a)
 {
-    const constants_t *k = constants;
     const mct_real force = mct_motor_observed_force(&k->motor, effects, u, x[2]);
     const mct_real thd = x[3];
-    mct_real s, c;
-    mct_sincos(x[1], &s, &c);
     const mct_real cart_damping = k->cart_viscous + drag_of(k, 0, x[2]);
     const mct_real pole_damping = k->pole_viscous + drag_of(k, 1, thd);
     solve(k, true, s, c, force - cart_damping * x[2] + k->moment * s * thd * thd,
           k->weight_moment * s - pole_damping * thd, a);
+}
+
+void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
+                              mct_real u, mct_real *a)
+{
+    accelerate_at(constants, effects, x, s, c, u, a);
+}
+
+/* The cart's acceleration grows by as much with each unit of input. */
+mct_real mct_cart_pole_input_for(const mct_cart_pole_constants *k, uint32_t effects, const mct_real *x, mct_real s,
+                                 mct_real c, mct_real acceleration)
+{
+    mct_real without[2], with_one[2];
+    accelerate_at(k, effects, x, s, c, 0, without);
+    accelerate_at(k, effects, x, s, c, 1, with_one);
+    return (acceleration - without[0]) / (with_one[0] - without[0]);
 }
 
 static void place(const void *constants, mct_hyperdual time, const mct_hyperdual *q,

@@ -521,12 +521,11 @@ static void evaluate(const void *constants, uint32_t effects, const mct_real *x,
     mct_motor_powers(&k->motor, effects, u, wheel_rate, out);
 }
 
-void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
-                                   mct_real *a)
+void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s,
+                                   mct_real c, mct_real u, mct_real *a)
 {
     const constants_t *k = constants;
-    mct_real s, c;
-    mct_sincos(x[0], &s, &c);
+    (void)c;
     const mct_real tau2 = mct_motor_observed_force(&k->motor, effects, u, x[3]) -
                           (k->wheel_viscous + drag_of(k, 1, x[3])) * x[3];
     const mct_real tau1 = k->weight_moment * s - (k->arm_viscous + drag_of(k, 0, x[2])) * x[2];

@@ -2,6 +2,7 @@
 #ifndef MCT_SYSTEMS_SYSTEMS_H
 #define MCT_SYSTEMS_SYSTEMS_H
 
+#include "mctau/cart_pole.h"
 #include "mctau/system.h"
 
 /* "particle_1" and on, MCT_MAX_PARTICLES of them: of a system that lists its particles. */
@@ -36,10 +37,10 @@ extern const mct_system mct_block;
 extern const mct_system mct_falling_sphere;
 
 /* What a tick reaches through these descriptors: found from outside by its name, mct_SYSTEM_MEMBER, as kernels are. */
-void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
-                              mct_real *a);
-void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real u,
-                                   mct_real *a);
+void mct_cart_pole_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, mct_real c,
+                              mct_real u, mct_real *a);
+void mct_reaction_wheel_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s,
+                                   mct_real c, mct_real u, mct_real *a);
 const mct_motor *mct_cart_pole_motor(const void *constants);
 const mct_motor *mct_reaction_wheel_motor(const void *constants);
 void mct_cart_pole_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
@@ -54,5 +55,9 @@ void mct_fixed_axis_motion(const void *constants, uint32_t effects, const mct_st
                            mct_motion *motion);
 void mct_solid_pendulum_motion(const void *constants, uint32_t effects, const mct_state *state, mct_real u,
                                mct_motion *motion);
+
+/* The input under which, by mct_cart_pole_accelerate, the cart has an acceleration. */
+mct_real mct_cart_pole_input_for(const mct_cart_pole_constants *constants, uint32_t effects, const mct_real *x,
+                                 mct_real s, mct_real c, mct_real acceleration);
 
 #endif

@@ -61,7 +61,7 @@ static void test_a_sine_begins_upwards_at_its_middle(void)
 static void test_a_step_comes_with_the_first_tick_that_is_not_before_it(void)
 {
     static const double times[] = {0.002, 0.0035, 0.005};
-    static const double values[] = {1, 2, 3};
+    static const mct_real values[] = {1, 2, 3};
     static const double expected[] = {0, 0, 1, 1, 2, 3, 3};
     scene.input_times.count = scene.input_values.count = 3;
     for (int i = 0; i < 3; i++) {
@@ -89,7 +89,7 @@ static void test_a_time_that_is_a_tick_but_for_rounding_is_that_tick(void)
 
 static void test_samples_are_one_a_tick_and_the_last_is_held(void)
 {
-    static const double values[] = {1, -2, 3, 99}; /* the last one is not among the three that are given */
+    static const mct_real values[] = {1, -2, 3, 99}; /* the last one is not among the three that are given */
     start(MCT_INPUT_CSV, (mct_samples){values, 3});
     TEST_ASSERT_EQUAL_DOUBLE(1, at(0));
     TEST_ASSERT_EQUAL_DOUBLE(-2, at(1));

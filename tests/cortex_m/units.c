@@ -10,8 +10,8 @@
 #include "hal/cortex_m/semihosting.h"
 
 /* A test's main, setUp and tearDown are renamed as it is compiled. */
-#define UNIT(name)         \
-    int name##_main(void); \
+#define UNIT(name)           \
+    int name##_main(void);   \
     void name##_setUp(void); \
     void name##_tearDown(void);
 #include "units.h"

@@ -1,10 +1,10 @@
 # Which C tests of src/ run on an emulated Cortex-M too: float on the M4F, double on the M7. For tests/CMakeLists.txt,
 # which names them to ctest, and for the CMakeLists.txt beside this file, which builds them for the target.
 #
-# mctau_units(LIST TAG): the files, in the caller's LIST; left out by what they include or declare:
-#   hal/socketcan                     what they test needs an operating system
-#   quad.h and what includes it       their reference is in quadruple precision, which this compiler has not
-#   long double, of those in double   is a double here
+# mctau_units(LIST TAG): the files, in the caller's LIST. Left out by what they hold:
+#   hal/socketcan   they need an operating system
+#   quad.h, and what includes it: the reference is in quadruple precision, which is double here, and enough to judge float,
+#                   unless the test says that it is not (return 77)
 set(units_kinds m4f m7)
 set(units_tags f32 f64)
 # And by name, with the reason:
@@ -14,12 +14,12 @@ set(units_not_f64)
 get_filename_component(units_tests ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 
 function(mctau_units list tag)
-    set(needs "hal/socketcan|support/(quad|reference|bodies|textbook)\\.h")
-    set(other f32)
     if(tag STREQUAL f64)
-        string(APPEND needs "|long double")
+        set(other f32)
+        set(needs "hal/socketcan|support/(quad|reference|bodies|textbook)\\.h")
     else()
         set(other f64)
+        set(needs "hal/socketcan|return 77")
     endif()
     set(found)
     foreach(room math gauss effects systems steppers control loop scene)

@@ -8,7 +8,7 @@
 
 #define ROUNDING ((double)MCT_REAL_EPSILON)
 
-enum { TRIALS = 200000 };
+enum { TRIALS = TEST_CASES(200000) };
 
 void setUp(void)
 {

@@ -12,7 +12,7 @@
 
 #define EPSILON DBL_EPSILON
 
-enum { TRIALS = 2000, PARTICLES = 7 };
+enum { TRIALS = TEST_CASES(2000), PARTICLES = 7 };
 
 void setUp(void)
 {

@@ -13,7 +13,7 @@
 #define EPSILON ((double)MCT_REAL_EPSILON)
 #define PI      3.14159265358979323846
 
-enum { TRIALS = 3000 };
+enum { TRIALS = TEST_CASES(3000) };
 
 void setUp(void)
 {

@@ -1,11 +1,20 @@
-/* The rules of include/mctau/sincos.h, held against long double; the largest errors found are printed. */
+/*
+ * The rules of include/mctau/sincos.h, held against long double; the largest errors found are printed. Where that is no
+ * wider than double, doubles are held by the bits that they have elsewhere.
+ */
 #include <math.h>
 #include <stdio.h>
 
 #include "mctau/sincos.h"
+#include "support/random.h"
 #include "unity.h"
 
 #define HALF_PI 1.570796326794896619231321691639751442L
+
+enum {
+    HAS_REFERENCE = LDBL_MANT_DIG >= 64, /* for doubles */
+    THINNED = 1000 / TEST_CASES(1000)
+};
 
 void setUp(void)
 {
@@ -27,16 +36,11 @@ static void reference_turn32(int32_t angle, long double *s, long double *c)
     *c = (quadrant + 1) & 2 ? -b : b;
 }
 
-static uint64_t random_state = 1;
+static test_random random_state = {1};
 
-/* xorshift64*: the same numbers on every machine */
 static double random_within(double bound)
 {
-    random_state ^= random_state >> 12;
-    random_state ^= random_state << 25;
-    random_state ^= random_state >> 27;
-    const uint64_t bits = (random_state * UINT64_C(2685821657736338717)) >> 11;
-    return ((double)bits * 0x1p-52 - 1.0) * bound;
+    return random_in(&random_state, -bound, bound);
 }
 
 /* Error in units in the last place of a format with that many digits. */
@@ -90,19 +94,20 @@ static double worst_f32(float from, float to, uint32_t stride)
 /* The stated errors are the largest of all floats and of 9e7 doubles; this repeats them on a sample. */
 static void test_double_errs_by_less_than_the_stated_ulps(void)
 {
-    const double pi = worst_random_f64(3.1415926535897931, 200000);
-    const double thousands = worst_random_f64(8192.0, 200000);
-    const double million = worst_random_f64(1e6, 200000);
+    const double pi = worst_random_f64(3.1415926535897931, TEST_CASES(200000));
+    const double thousands = worst_random_f64(8192.0, TEST_CASES(200000));
+    const double million = worst_random_f64(1e6, TEST_CASES(200000));
     printf("mctau: sincos double, max ulp: %.3f (pi), %.3f (8192), %.3f (1e6)\n", pi, thousands, million);
-    TEST_ASSERT_TRUE(pi < 0.83);
-    TEST_ASSERT_TRUE(thousands < 0.83);
-    TEST_ASSERT_TRUE(million < 1.7); /* the tail, 16 roundings there, meets no exact cosine */
+    TEST_ASSERT_TRUE(pi < 0.83 || !HAS_REFERENCE);
+    TEST_ASSERT_TRUE(thousands < 0.83 || !HAS_REFERENCE);
+    TEST_ASSERT_TRUE(million < 1.7 ||
+                     !HAS_REFERENCE); /* the tail, 16 roundings there, meets no exact cosine */
 }
 
 static void test_float_errs_by_less_than_the_stated_ulps(void)
 {
-    const double pi = worst_f32(1e-4f, 3.1415927f, 211);
-    const double thousands = worst_f32(3.1415927f, 8192.0f, 211);
+    const double pi = worst_f32(1e-4f, 3.1415927f, 211 * THINNED);
+    const double thousands = worst_f32(3.1415927f, 8192.0f, 211 * THINNED);
     printf("mctau: sincos float, max ulp: %.3f (pi), %.3f (8192)\n", pi, thousands);
     TEST_ASSERT_TRUE(pi < 0.83);
     TEST_ASSERT_TRUE(thousands < 0.86);
@@ -111,7 +116,7 @@ static void test_float_errs_by_less_than_the_stated_ulps(void)
 static void test_the_angles_nearest_to_a_zero_lose_no_digits(void)
 {
     double worst = 0.0;
-    for (int n = 1; n < 636619; n += n < 10000 ? 1 : 97) {
+    for (int n = 1; n < 636619; n += n < 10000 ? THINNED : 97 * THINNED) {
         worst = fmax(worst, error_f64((double)(n * HALF_PI)));
     }
     double worst_float = 0.0;
@@ -119,7 +124,7 @@ static void test_the_angles_nearest_to_a_zero_lose_no_digits(void)
         worst_float = fmax(worst_float, error_f32((float)(n * HALF_PI)));
     }
     printf("mctau: sincos nearest to n pi/2, max ulp: %.3f double, %.3f float\n", worst, worst_float);
-    TEST_ASSERT_TRUE(worst < 0.83);
+    TEST_ASSERT_TRUE(worst < 0.83 || !HAS_REFERENCE);
     TEST_ASSERT_TRUE(worst_float < 0.86);
 }
 
@@ -128,7 +133,7 @@ static void test_beyond_its_range_the_error_is_at_most_one_unit_of_the_angle(voi
 {
     double worst = 0.0;
     for (double bound = 1e6; bound < 3e15; bound *= 1.5) {
-        for (int i = 0; i < 2000; i++) {
+        for (int i = 0; i < TEST_CASES(2000); i++) {
             const double x = random_within(bound);
             double s;
             double c;
@@ -139,7 +144,7 @@ static void test_beyond_its_range_the_error_is_at_most_one_unit_of_the_angle(voi
         }
     }
     double worst_float = 0.0;
-    for (float x = 8192.0f; x < 3.2e6f; x *= 1.00001f) {
+    for (float x = 8192.0f; x < 3.2e6f; x *= 1 + 1e-5f * THINNED) {
         float s;
         float c;
         mct_sincos_f32(x, &s, &c);
@@ -148,7 +153,7 @@ static void test_beyond_its_range_the_error_is_at_most_one_unit_of_the_angle(voi
         worst_float = fmax(worst_float, (error - (double)FLT_EPSILON) / unit);
     }
     printf("mctau: sincos beyond its range, max ulp of x: %.3f double, %.3f float\n", worst, worst_float);
-    TEST_ASSERT_TRUE(worst <= 1.0);
+    TEST_ASSERT_TRUE(worst <= 1.0 || !HAS_REFERENCE);
     TEST_ASSERT_TRUE(worst_float <= 1.0);
 }
 
@@ -172,7 +177,7 @@ static void test_no_angle_without_a_meaning_has_a_sine(void)
 
 static void test_sine_is_odd_and_cosine_is_even_to_the_bit(void)
 {
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < TEST_CASES(20000); i++) {
         const double x = random_within(1e5);
         double s[2];
         double c[2];
@@ -207,7 +212,7 @@ static void test_small_angles_are_their_own_sine(void)
 static void test_sine_rises_from_quarter_to_quarter_turn_without_a_step_back(void)
 {
     float before = -1.0f;
-    for (int i = -400000; i <= 400000; i++) {
+    for (int i = -400000; i <= 400000; i += THINNED) {
         float s;
         float c;
         mct_sincos_f32((float)(HALF_PI / 400000) * (float)i, &s, &c);
@@ -238,7 +243,7 @@ static void test_binary_angle_errs_by_less_than_the_stated_ulps(void)
 {
     double worst = 0.0;
     double worst_double = 0.0;
-    for (int64_t i = INT32_MIN; i <= INT32_MAX; i += 6007) {
+    for (int64_t i = INT32_MIN; i <= INT32_MAX; i += 6007 * THINNED) {
         const int32_t angle = (int32_t)i;
         long double wanted_s;
         long double wanted_c;
@@ -255,7 +260,7 @@ static void test_binary_angle_errs_by_less_than_the_stated_ulps(void)
     }
     printf("mctau: sincos of binary angle, max ulp: %.3f float, %.3f double\n", worst, worst_double);
     TEST_ASSERT_TRUE(worst < 0.86);
-    TEST_ASSERT_TRUE(worst_double < 0.83);
+    TEST_ASSERT_TRUE(worst_double < 0.83 || !HAS_REFERENCE);
 }
 
 static void test_every_quarter_of_a_binary_turn_is_exact(void)
@@ -277,7 +282,7 @@ static void test_every_quarter_of_a_binary_turn_is_exact(void)
 
 static void test_smallest_binary_angles_keep_all_their_digits(void)
 {
-    for (int32_t i = -70000; i <= 70000; i++) {
+    for (int32_t i = -70000; i <= 70000; i += THINNED) {
         long double wanted_s;
         long double wanted_c;
         reference_turn32(i, &wanted_s, &wanted_c);
@@ -288,6 +293,36 @@ static void test_smallest_binary_angles_keep_all_their_digits(void)
         TEST_ASSERT_TRUE(ulps(s[0], wanted_s, FLT_MANT_DIG) < 0.86);
         TEST_ASSERT_TRUE(s[1] == -s[0]);
     }
+}
+
+/* FNV-1a */
+static void hash_bytes(uint64_t *hash, const void *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        *hash = (*hash ^ ((const uint8_t *)bytes)[i]) * UINT64_C(0x100000001b3);
+    }
+}
+
+static void test_sine_and_cosine_have_the_same_bits_on_every_machine(void)
+{
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    test_random random = {5};
+    for (int i = 0; i < 20000; i++) {
+        const uint64_t bits = random_bits(&random);
+        const double x = random_in(&random, -1, 1) * (double)(UINT64_C(1) << (bits & 31));
+        const int32_t turn = (int32_t)(bits >> 33) - INT32_C(0x40000000);
+        double s[2], c[2];
+        float t[2], d[2];
+        mct_sincos_f64(x, &s[0], &c[0]);
+        mct_sincos_turn32_f64(turn, &s[1], &c[1]);
+        mct_sincos_f32((float)random_in(&random, -8192, 8192), &t[0], &d[0]);
+        mct_sincos_turn32(turn, &t[1], &d[1]);
+        hash_bytes(&hash, s, sizeof s);
+        hash_bytes(&hash, c, sizeof c);
+        hash_bytes(&hash, t, sizeof t);
+        hash_bytes(&hash, d, sizeof d);
+    }
+    TEST_ASSERT_TRUE(hash == UINT64_C(0x6667c2e9b034b56b));
 }
 
 static void test_the_core_takes_its_own_precision(void)
@@ -314,10 +349,6 @@ static void test_the_core_takes_its_own_precision(void)
 
 int main(void)
 {
-    if (LDBL_MANT_DIG < 64) {
-        printf("skipped: long double is no wider than double here, so there is no reference\n");
-        return 77;
-    }
     UNITY_BEGIN();
     RUN_TEST(test_double_errs_by_less_than_the_stated_ulps);
     RUN_TEST(test_float_errs_by_less_than_the_stated_ulps);
@@ -330,6 +361,7 @@ int main(void)
     RUN_TEST(test_binary_angle_errs_by_less_than_the_stated_ulps);
     RUN_TEST(test_every_quarter_of_a_binary_turn_is_exact);
     RUN_TEST(test_smallest_binary_angles_keep_all_their_digits);
+    RUN_TEST(test_sine_and_cosine_have_the_same_bits_on_every_machine);
     RUN_TEST(test_the_core_takes_its_own_precision);
     return UNITY_END();
 }

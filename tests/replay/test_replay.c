@@ -120,9 +120,9 @@ static void test_a_replay_of_free_motion_and_of_a_sine_has_the_same_bits(void)
 static void test_a_csv_input_is_taken_from_the_log(void)
 {
     enum { TICKS = 2000 };
-    static double samples[TICKS / 2];
+    static mct_real samples[TICKS / 2];
     for (int i = 0; i < TICKS / 2; i++) {
-        samples[i] = 6.0 * ((i / 100) % 2) - 3.1;
+        samples[i] = (mct_real)(6.0 * ((i / 100) % 2) - 3.1);
     }
     logged_run_all(
         &run,

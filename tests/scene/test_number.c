@@ -7,31 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/random.h"
 #include "unity.h"
 
-static uint64_t state;
+static test_random draws;
 
 void setUp(void)
 {
-    state = 88172645463325252u;
+    draws.state = 88172645463325252u;
 }
 
 void tearDown(void)
 {
 }
 
-/* xorshift64 */
-static uint64_t random_bits(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return state;
-}
-
 static double random_double(void)
 {
-    uint64_t bits = random_bits();
+    uint64_t bits = random_bits(&draws);
     double value;
     if (bits % 5 == 0) {
         bits &= 0x800FFFFFFFFFFFFFu; /* subnormal */
@@ -63,7 +55,7 @@ static void assert_as_strtod(const char *text)
 
 static void test_seventeen_digits_give_the_double_back(void)
 {
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < TEST_CASES(20000); i++) {
         char text[64];
         const double value = random_double();
         if (isfinite(value)) {
@@ -75,14 +67,14 @@ static void test_seventeen_digits_give_the_double_back(void)
 
 static void test_the_middle_of_two_doubles_rounds_to_even_and_its_neighbours_do_not(void)
 {
-    for (int i = 0; i < 2000; i++) { /* odd integers of 54 bits */
+    for (int i = 0; i < TEST_CASES(2000); i++) { /* odd integers of 54 bits */
         char text[64];
-        const uint64_t odd = ((uint64_t)1 << 53) | (random_bits() >> 11) | 1;
+        const uint64_t odd = ((uint64_t)1 << 53) | (random_bits(&draws) >> 11) | 1;
         snprintf(text, sizeof text, "%llu.0", (unsigned long long)odd);
         assert_bits((double)(odd % 4 == 1 ? odd - 1 : odd + 1), read_number(text), text);
     }
 #if LDBL_MANT_DIG > 53 /* else there is no type to hold the middle of any two */
-    for (int i = 0; i < 2000; i++) {
+    for (int i = 0; i < TEST_CASES(2000); i++) {
         char text[1400];
         double lower = fabs(random_double());
         if (!isfinite(lower)) {
@@ -247,17 +239,17 @@ static void test_what_toml_forbids_is_refused_with_a_reason(void)
 
 static void test_numbers_are_written_as_nine_digits_of_printf(void)
 {
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < TEST_CASES(20000); i++) {
         char expected[64];
         char written[MCT_NUMBER_TEXT];
         double value = random_double();
         if (i % 4 == 1) {
-            value = (double)(int64_t)(random_bits() >> 20) / 1024; /* with ties */
+            value = (double)(int64_t)(random_bits(&draws) >> 20) / 1024; /* with ties */
         } else if (i % 4 == 2) {
             value = ldexp(i % 8 == 2 ? 1 : 0x1.fffffffffffffp0, i % 2098 - 1074); /* about powers of two */
         } else if (i % 4 == 3) {
-            value =
-                (double)(random_bits() % 1000000) * pow(10, (double)(i % 30) - 20); /* about powers of ten */
+            value = (double)(random_bits(&draws) % 1000000) *
+                    pow(10, (double)(i % 30) - 20); /* about powers of ten */
         }
         if (!isnan(value)) {
             snprintf(expected, sizeof expected, "%.9g", value);

@@ -16,7 +16,7 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-enum { TRIALS = 10000, MOST = 8 };
+enum { TRIALS = TEST_CASES(10000), MOST = 8 };
 
 #define TOLERANCE (MCT_REAL_IS_FLOAT ? 2000 * (double)FLT_EPSILON : 1e-12)
 
@@ -486,7 +486,7 @@ static void test_what_a_free_body_keeps_over_a_million_steps(void)
         const double energy = energy_of(&plant);
         const int n = plant.system->coordinate_count;
         momentum_of(&plant, start);
-        for (int k = 0; k < 1000; k++) {
+        for (int k = 0; k < TEST_CASES(1000); k++) {
             double square = 0;
             step_plant(&plant, 0, 1000);
             momentum_of(&plant, now);

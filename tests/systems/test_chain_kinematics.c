@@ -102,7 +102,7 @@ static int updates_to_converge(const mct_chain_constants *chain, mct_real *angle
 static void test_tip_and_jacobian_are_those_of_the_sums_at_random_poses(void)
 {
     test_random random = {431};
-    for (int trial = 0; trial < 10000; trial++) {
+    for (int trial = 0; trial < TEST_CASES(10000); trial++) {
         const int n = 1 + trial % MOST;
         const mct_chain_constants chain = chain_of(n, MCT_CHAIN_RIDGE, &random);
         /* 4 roundings a link: of the angle's sine, of the turn and of the sum, each of at most the reach */
@@ -167,7 +167,7 @@ static void test_a_chain_that_has_wound_itself_up_loses_no_digits(void)
 static void test_the_aim_is_the_point_within_reach_nearest_to_the_target(void)
 {
     test_random random = {17};
-    for (int trial = 0; trial < 2000; trial++) {
+    for (int trial = 0; trial < TEST_CASES(2000); trial++) {
         const int n = 1 + trial % 4;
         mct_chain_constants chain = chain_of(n, MCT_CHAIN_RIDGE, &random);
         if (trial % 3 == 0) {
@@ -200,7 +200,7 @@ static void test_ridge_minimises_the_damped_functional(void)
 {
     /* 1/2 |e - J dq|^2 + alpha/2 |dq|^2: rows [J; sqrt(alpha) 1], right side [e; 0] */
     test_random random = {427};
-    for (int trial = 0; trial < 2000; trial++) {
+    for (int trial = 0; trial < TEST_CASES(2000); trial++) {
         const int n = 1 + trial % MCT_LEAST_SQUARES_MAX_COLUMNS;
         mct_chain_constants chain = chain_of(n, MCT_CHAIN_RIDGE, &random);
         chain.largest_step = MCT_R(1e9);
@@ -349,7 +349,7 @@ static void test_the_penalty_as_printed_pulls_the_angles_to_zero_and_misses_the_
 static void test_transpose_diverges_for_a_gain_above_two_over_the_square_of_the_jacobian(void)
 {
     test_random random = {422};
-    for (int trial = 0; trial < 200; trial++) {
+    for (int trial = 0; trial < TEST_CASES(200); trial++) {
         const int n = 1 + trial % MOST;
         mct_chain_constants chain = chain_of(n, MCT_CHAIN_TRANSPOSE, &random);
         mct_real goal[MOST];
@@ -395,7 +395,7 @@ static void test_a_third_of_the_largest_gain_never_takes_the_tip_farther_away(vo
 {
     /* the gradient turns by at most |J|^2 + |e| |d2f|, three times |J|^2 of the stretched pose */
     test_random random = {423};
-    for (int trial = 0; trial < 200; trial++) {
+    for (int trial = 0; trial < TEST_CASES(200); trial++) {
         const int n = 2 + trial % 4;
         mct_chain_constants chain = chain_of(n, MCT_CHAIN_TRANSPOSE, &random);
         aim_at(&chain, random_in(&random, 0, 1) * (double)chain.reach, random_in(&random, -PI, PI));
@@ -416,7 +416,7 @@ static void test_the_step_of_ridge_is_bounded_and_that_of_inverse_is_not(void)
 {
     test_random random = {30};
     double longest_inverse = 0;
-    for (int trial = 0; trial < 5000; trial++) {
+    for (int trial = 0; trial < TEST_CASES(5000); trial++) {
         const int n = 1 + trial % MOST;
         mct_chain_constants chain = chain_of(n, MCT_CHAIN_RIDGE, &random);
         chain.largest_step = MCT_R(1e9);
@@ -644,7 +644,7 @@ static void test_aiming_at_a_target_out_of_reach_itself_would_not_settle(void)
 static void test_two_links_end_at_one_of_the_two_poses_of_the_triangle(void)
 {
     test_random random = {2};
-    for (int trial = 0; trial < 1000; trial++) {
+    for (int trial = 0; trial < TEST_CASES(1000); trial++) {
         mct_chain_constants chain = chain_of(2, MCT_CHAIN_RIDGE, &random);
         const double a = (double)chain.length[0];
         const double b = (double)chain.length[1];
@@ -697,7 +697,7 @@ static void test_units_of_length_do_not_matter(void)
 {
     test_random random = {5};
     for (int method = 0; method < METHODS; method++) {
-        for (int trial = 0; trial < 200; trial++) {
+        for (int trial = 0; trial < TEST_CASES(200); trial++) {
             const int n = 1 + trial % MOST;
             mct_chain_constants chain = chain_of(n, (mct_chain_method)method, &random);
             aim_at(&chain, random_in(&random, 0.5, 1.5) * (double)chain.reach, 1);

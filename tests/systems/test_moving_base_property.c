@@ -15,7 +15,7 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-enum { TRIALS = 10000 };
+enum { TRIALS = TEST_CASES(10000) };
 
 #define TOLERANCE (MCT_REAL_IS_FLOAT ? 300 * (double)FLT_EPSILON : 1e-12)
 #define TURN      6.283185307179586

@@ -37,7 +37,8 @@ static void test_what_a_system_with_a_motor_has_is_found_by_its_name(void)
 {
     static const struct {
         const mct_system *system;
-        void (*accelerate)(const void *, uint32_t, const mct_real *, mct_real, mct_real *);
+        void (*accelerate)(const void *, uint32_t, const mct_real *, mct_real, mct_real, mct_real,
+                           mct_real *);
         const mct_motor *(*motor)(const void *);
         mct_real (*swing_up)(mct_controller *);
     } named[] = {

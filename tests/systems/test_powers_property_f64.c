@@ -15,7 +15,7 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-enum { TRIALS = 10000 };
+enum { TRIALS = TEST_CASES(10000) };
 
 void setUp(void)
 {

@@ -13,7 +13,7 @@
 #include "support/scenes.h"
 #include "unity.h"
 
-enum { TRIALS = 10000, PARTICLES = 4 };
+enum { TRIALS = TEST_CASES(10000), PARTICLES = 4 };
 
 #define TOLERANCE (MCT_REAL_IS_FLOAT ? 300 * (double)FLT_EPSILON : 1e-12)
 

@@ -29,6 +29,14 @@ class Unavailable(Exception):
     """Something is missing, or cannot be built; the text says what and what would help."""
 
 
+class Failed(Unavailable):
+    """A program failed; `said` is all that it printed."""
+
+    def __init__(self, text, said):
+        super().__init__(text)
+        self.said = said
+
+
 class BadScene(Exception):
     """The scene is wrong; the text is the reader's."""
 
@@ -57,14 +65,14 @@ def output(command, timeout=RUN_SECONDS, **options):
         what = " ".join(str(word) for word in command[:3])
         said = (done.stdout + done.stderr).splitlines()
         errors = [line for line in said if "error" in line.lower()] or said
-        raise Unavailable("\n".join([f"{what} ...: exit code {done.returncode}", *errors[:20]]))
+        raise Failed("\n".join([f"{what} ...: exit code {done.returncode}", *errors[:20]]), "\n".join(said))
     return done.stdout
 
 
 # --- building ---
 
 
-def _compile_here(program, precision, sources, build):
+def compile_here(program, precision, sources, build):
     """A program for this machine, with the library as it is built here."""
     library = build / LIBRARIES[precision]
     headers = (ROOT / "include/mctau").glob("*.h")
@@ -72,7 +80,7 @@ def _compile_here(program, precision, sources, build):
         raise Unavailable(f"{library} is not built, or older than its headers: cmake --build --preset host")
     includes = [f"-I{place}" for place in (build / "include" / precision, ROOT / "include", ROOT)]
     files = [HERE / source for source in sources]
-    options = ["-std=c99", "-O1", "-ffp-contract=off"]
+    options = ["-std=c99", "-O1", "-ffp-contract=off", "-D_POSIX_C_SOURCE=200809L"]
     output(["cc", *options, *includes, *files, library, "-lpthread", "-lrt", "-o", program])
 
 
@@ -82,8 +90,8 @@ def build_folder(target):
     return folder
 
 
-def build_target(target, name):
-    """Path of an image of hal/cortex_m/CMakeLists.txt, built anew where it is old."""
+def build_target(target, name, file=None):
+    """Path of an image, or another file, of hal/cortex_m/CMakeLists.txt, built anew where it is old."""
     kind = TARGETS[target]
     folder = build_folder(target)
     with open(folder / ".lock", "w", encoding="utf-8") as lock:
@@ -92,7 +100,7 @@ def build_target(target, name):
             output(["cmake", "-S", ROOT / "hal/cortex_m", "-B", folder, "-G", "Ninja", "--toolchain",
                      ROOT / f"cmake/cortex-{kind}.cmake"])
         output(["ninja", "-C", folder, "-j", min(2, os.cpu_count() or 1), name])
-    return folder / f"{name}.elf"
+    return folder / (file or f"{name}.elf")
 
 
 def build_image(target, system, precision):
@@ -107,7 +115,7 @@ def job_of(scene, ticks, assignments=(), build=None):
     precision = "double" if (build / LIBRARIES["double"]).exists() else "float"
     with tempfile.TemporaryDirectory() as folder:
         program, file = pathlib.Path(folder, "scene_job"), pathlib.Path(folder, "job")
-        _compile_here(program, precision, ["scene_job.c"], build)
+        compile_here(program, precision, ["scene_job.c"], build)
         done = subprocess.run([program, str(scene), file, str(ticks), *assignments], capture_output=True, text=True)
         if done.returncode:
             raise (BadScene if done.returncode == 2 else Unavailable)(done.stderr.strip())
@@ -149,7 +157,7 @@ def run_here(job, precision, build=None):
     """The same runs on this machine: rows whose counts mean nothing and whose hashes must be the same."""
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder, "count")
-        _compile_here(program, precision, ["count.c", "native.c"], build or host_build())
+        compile_here(program, precision, ["count.c", "native.c"], build or host_build())
         return _read(output([program], env=os.environ | {"IMAGE_ARGUMENTS": str(job)}))
 
 

@@ -73,17 +73,17 @@ uint64_t image_hash(uint64_t hash, const void *data, size_t size)
 
 /* --- instructions --- */
 
-/* Functions of one instruction, to return, and of a thousand more: what counting costs, and whether it counts. */
+/* Functions of one instruction, to return, and of a hundred more: what counting costs, and whether it counts. */
 __attribute__((noinline)) static void nothing(mct_loop *loop)
 {
     (void)loop;
     __asm__ volatile("");
 }
 
-__attribute__((noinline)) static void thousand(mct_loop *loop)
+__attribute__((noinline)) static void hundred(mct_loop *loop)
 {
     (void)loop;
-    __asm__ volatile(".rept 1000\n\tnop\n\t.endr");
+    __asm__ volatile(".rept 100\n\tnop\n\t.endr");
 }
 
 __attribute__((noinline)) static uint32_t counted(void (*work)(mct_loop *), mct_loop *loop)
@@ -96,10 +96,10 @@ __attribute__((noinline)) static uint32_t counted(void (*work)(mct_loop *), mct_
 bool image_begin(void)
 {
     void (*volatile none)(mct_loop *) = nothing;
-    void (*volatile more)(mct_loop *) = thousand;
+    void (*volatile more)(mct_loop *) = hundred;
     target_start();
     target_paint_stack();
-    return !TARGET_COUNTS || counted(more, NULL) - counted(none, NULL) == 1000;
+    return !TARGET_COUNTS || counted(more, NULL) - counted(none, NULL) == 100;
 }
 
 void image_tick(mct_loop *loop, image_counts *counts)
@@ -116,10 +116,20 @@ void image_tick(mct_loop *loop, image_counts *counts)
 
 void image_report(const mct_loop *loop, const image_counts *counts, uint64_t hash)
 {
-    const uint64_t result[] = {counts->ticks, hash, loop->record.mode, loop->record.faults};
+    const uint64_t result[] = {counts->ticks, hash, loop->record.faults};
     const uint64_t instructions[] = {counts->least, counts->sum, counts->most};
     const uint64_t stack = target_stack_used();
-    image_print("run", result, 4);
+    image_print("run", result, 3);
+    mct_semihosting_write("mode ");
+    mct_semihosting_write(mct_mode_name((mct_mode)loop->record.mode));
+    mct_semihosting_write("\n");
+    for (int i = 0; !TARGET_COUNTS && i < MCT_FAULT_COUNT; i++) { /* an image has no room for names */
+        if (loop->record.faults & (1u << i)) {
+            mct_semihosting_write("fault ");
+            mct_semihosting_write(mct_fault_name((mct_fault)i));
+            mct_semihosting_write("\n");
+        }
+    }
     if (TARGET_COUNTS) {
         image_print("instructions", instructions, 3);
         image_print("stack", &stack, 1);

@@ -3,8 +3,6 @@
  *
  * Command line: the image's name, a file for the records, or "-", then the number of ticks instead of the scene's.
  */
-#include <string.h>
-
 #include "hal/compiled.h"
 #include "hal/records.h"
 #include "image.h"
@@ -20,7 +18,7 @@ int main(void)
         return image_fail("the emulator's timer does not count instructions");
     }
     const uint64_t ticks = image_number(2, mct_compiled_ticks);
-    const bool records = image_word(1, path) && strcmp(path, "-") != 0;
+    const bool records = image_word(1, path) && path[0] != '-';
     const mct_records_head head = mct_records_head_here();
     const int32_t file = records ? mct_semihosting_open(path, true) : -1;
     bool written = !records || (file != -1 && mct_semihosting_append(file, &head, sizeof head));

@@ -388,7 +388,7 @@ static int find_inputs(study *self, const scene_file *file, uint64_t ticks)
         return 0;
     }
     mct_message why;
-    const run_options options = {.samples = file->samples, .sample_count = file->sample_count};
+    const run_options options = {.samples = file->samples};
     self->inputs = need_memory(calloc(self->ticks, sizeof *self->inputs));
     const mct_status status = file->runner->inputs(&file->scene, &options, ticks, self->inputs, &why);
     if (status != MCT_OK) {

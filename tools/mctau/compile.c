@@ -89,7 +89,7 @@ static void put_head(csv_output *out, const scene_file *file)
 static int write_file(const scene_file *file, const char *path)
 {
     mct_message why = {""};
-    const run_options given = {.samples = file->samples, .sample_count = file->sample_count};
+    const run_options given = {.samples = file->samples};
     csv_output *out = need_memory(malloc(sizeof *out));
     mct_status status = csv_output_open(out, path, &why);
     int exit_code = status != MCT_OK ? say_status(status, &why) : EXIT_WELL;

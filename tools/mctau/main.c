@@ -9,8 +9,9 @@
 #include "verbs.h"
 
 /* A new verb is a file and a row here. */
-static const verb *const verbs[] = {&verb_run,  &verb_mct,  &verb_list,   &verb_replay, &verb_drive,
-                                    &verb_cost, &verb_pick, &verb_advise, &verb_hard,   &verb_compile};
+static const verb *const verbs[] = {&verb_run,   &verb_mct,     &verb_list,  &verb_replay,
+                                    &verb_drive, &verb_cost,    &verb_pick,  &verb_advise,
+                                    &verb_hard,  &verb_compile, &verb_import};
 enum { VERBS = sizeof verbs / sizeof verbs[0] };
 
 static void print_overview(FILE *file)

@@ -390,7 +390,7 @@ static int evaluate(const scene_file *file, const arguments *given)
     mct_message why;
     double input = 0;
     const char *text = arguments_value(given, "input");
-    const run_options samples = {.samples = file->samples, .sample_count = file->sample_count};
+    const run_options samples = {.samples = file->samples};
     if (text != NULL && read_input(text, &input) != 0) {
         return EXIT_USAGE;
     }

@@ -219,7 +219,6 @@ static int run_scene(const scene_file *file, const arguments *given)
         .lcm = file->scene.lcm,
         .scene_text = file->text,
         .samples = file->samples,
-        .sample_count = file->sample_count,
         .stop = &stop_signal,
         .rearm = &rearm_requests,
         .started = arguments_value(given, "json") == NULL ? say_start : NULL,

@@ -10,6 +10,7 @@
 #include "runner_compile.h"
 #include "runner_cost.h"
 #include "runner_drive.h"
+#include "runner_import.h"
 #include "runner_ledger.h"
 #include "runner_replay.h"
 #include "runner_run.h"
@@ -42,7 +43,7 @@ static mct_real input_of(const mct_scene *scene, const run_options *options, con
                          mct_real bound)
 {
     mct_input open_loop;
-    mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});
+    mct_input_init(&open_loop, scene, RUNNER_SAMPLES(options));
     const mct_real wanted = given != NULL ? (mct_real)*given : mct_input_at(&open_loop, 0);
     return wanted > bound ? bound : wanted < -bound ? -bound : wanted;
 }
@@ -142,6 +143,7 @@ const mct_runner MCT_RUNNER = {
     .depart = runner_depart,
     .time_scale = runner_time_scale,
     .compile = runner_compile,
+    .import = runner_import,
     .hard_case_after = hard_case_after,
     .hard_run_case = hard_run_case,
     .hard_judge = hard_judge,

@@ -37,14 +37,27 @@ typedef struct {
     uint64_t lost_ticks; /* whose exact motion could not be followed: left unexplained */
 } ledger_result;
 
+/* Of a csv input, one a tick. */
+typedef struct {
+    double *f64;
+    float *f32; /* the same, rounded */
+    size_t count;
+} csv_samples;
+
+/* Those of a runner's own precision. */
+#if MCT_REAL_IS_FLOAT
+#define RUNNER_SAMPLES(options) ((mct_samples){(options)->samples.f32, (options)->samples.count})
+#else
+#define RUNNER_SAMPLES(options) ((mct_samples){(options)->samples.f64, (options)->samples.count})
+#endif
+
 /* Where the results of a run go; NULL or "" for nowhere. */
 typedef struct {
     const char *csv; /* path, "-" for stdout */
     const char *log;
     const char *lcm;
     const char *scene_text; /* as read, with its overrides, for the log */
-    const double *samples;  /* of a csv input, one a tick */
-    size_t sample_count;
+    csv_samples samples;
     const volatile int *stop;  /* set by a signal: the run ends at zero volts */
     const volatile int *rearm; /* counts requests to clear faults and arm again */
     void (*started)(
@@ -145,6 +158,11 @@ typedef struct {
     char field[64];      /* that differs, as "applied" or "state.arm_angle" */
     double recorded, replayed;
 } replay_result;
+
+typedef struct {
+    uint64_t ticks;
+    uint64_t left_over; /* bytes behind the last whole record */
+} import_result;
 
 /* A virtual drive on a CAN interface. */
 typedef struct {
@@ -247,6 +265,9 @@ typedef struct {
     /* The scene's structs as C text: see runner_compile.h. */
     mct_status (*compile)(const mct_scene *scene, const run_options *options, csv_output *out,
                           mct_message *why);
+    /* An image's records into an event log: see runner_import.h. */
+    mct_status (*import)(const mct_scene *scene, const char *records, const run_options *options,
+                         import_result *result, mct_message *why);
     /* Hard cases: see tools/hard/hard.h. */
     const hard_case *(*hard_case_after)(int number);
     void (*hard_run_case)(const hard_case *about, bool is_full, hard_result results[HARD_METHOD_COUNT]);

@@ -109,15 +109,6 @@ static void put_double(text *self, const char *name, double value)
     }
 }
 
-static void put_doubles(text *self, const char *name, const double *values, int count)
-{
-    for (int i = 0; i < count; i++) {
-        char place[64];
-        snprintf(place, sizeof place, "%s[%d]", name, i);
-        put_double(self, place, values[i]);
-    }
-}
-
 static void put_real(text *self, const char *name, mct_real value)
 {
     if (value != 0) {
@@ -163,8 +154,6 @@ static void put_words(text *self, const void *data, size_t size)
 #define REAL(field)    put_real(self, #field, from->field)
 #define REALS(field)   put_reals(self, #field, from->field, (int)(sizeof from->field / sizeof from->field[0]))
 #define DOUBLE(field)  put_double(self, #field, from->field)
-#define DOUBLES(field) \
-    put_doubles(self, #field, from->field, (int)(sizeof from->field / sizeof from->field[0]))
 
 /* --- what a tick reads of a system --- */
 
@@ -181,9 +170,8 @@ static void put_actuation(text *self, const mct_system *system)
 {
     const mct_actuation *from = system->actuation;
     put(self,
-        "\nvoid mct_%s_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real "
-        "input,\n"
-        "    mct_real *a);\n"
+        "\nvoid mct_%s_accelerate(const void *constants, uint32_t effects, const mct_real *x, mct_real s, "
+        "mct_real c,\n    mct_real input, mct_real *a);\n"
         "const mct_motor *mct_%s_motor(const void *constants);\n",
         system->name, system->name);
     put(self, "\nstatic const mct_actuation actuation = {\n");
@@ -241,9 +229,11 @@ static void put_samples(text *self, const mct_input *from)
     if (from->samples.count == 0) {
         return;
     }
-    put(self, "\nstatic const double samples[] = {\n");
+    put(self, "\nstatic const mct_real samples[] = {\n");
     for (size_t i = 0; i < from->samples.count; i++) {
-        put(self, "    %a,\n", from->samples.values[i]);
+        put(self, "    ");
+        put_number(self, (double)from->samples.values[i]);
+        put(self, ",\n");
     }
     put(self, "};\n");
 }
@@ -255,7 +245,10 @@ static void put_input(text *self, const mct_input *from)
     put(self, ".kind = %" PRId32 ",\n", from->kind);
     REAL(value);
     REAL(amplitude);
-    DOUBLE(phase_per_tick);
+    if (from->phase_per_tick != 0) {
+        indent(self);
+        put(self, ".phase_per_tick = %" PRIu64 "U,\n", from->phase_per_tick);
+    }
     INTEGER(step_count);
     for (int i = 0; i < from->step_count; i++) {
         indent(self);
@@ -311,6 +304,8 @@ static void put_observer(text *self, const mct_observer *from)
     }
     REAL(gravity_slope);
     REALS(x);
+    REAL(sine);
+    REAL(cosine);
     end(self);
 }
 
@@ -410,6 +405,19 @@ static void put_plant(text *self, const mct_plant *from, const char *kernel)
     end(self);
 }
 
+static void put_sim_encoder(text *self, const mct_sim_encoder *from, int number)
+{
+    char name[32];
+    snprintf(name, sizeof name, "encoders[%d]", number);
+    begin(self, name);
+    INTEGER(turn_counts);
+    REAL(unit_counts);
+    REAL(unit_rest);
+    MASK(start_counts);
+    REAL(start_rest);
+    end(self);
+}
+
 static void put_sim(text *self, const mct_sim *from, const char *kernel)
 {
     put(self,
@@ -418,10 +426,11 @@ static void put_sim(text *self, const mct_sim *from, const char *kernel)
         kernel);
     self->depth = 1;
     put_plant(self, &from->plant, kernel);
-    DOUBLES(turn_counts);
-    DOUBLES(unit_counts);
-    DOUBLES(start_counts);
-    DOUBLE(noise);
+    for (int i = 0; i < from->encoder_count; i++) {
+        put_sim_encoder(self, &from->encoders[i], i);
+    }
+    INTEGER(encoder_count);
+    REAL(noise);
     INTEGER(seed);
     INTEGER(counter_shift);
     INTEGER(latency);
@@ -532,11 +541,10 @@ mct_status runner_compile(const mct_scene *scene, const run_options *options, cs
     compiled.realtime = 0; /* a clock is the program's */
     mct_status status = MCT_ERROR_IO;
     if (sim != NULL && loop != NULL && plan != NULL) {
-        const mct_samples samples = {options->samples, options->sample_count};
         status = mct_sim_init(sim, &compiled, why);
         status = status != MCT_OK
                      ? status
-                     : mct_loop_init(loop, plan, &compiled, (mct_hal){NULL, NULL}, NULL, samples, why);
+                     : mct_loop_init(loop, plan, &compiled, (mct_hal){NULL, NULL}, NULL, RUNNER_SAMPLES(options), why);
     }
     if (status == MCT_OK) {
         const mct_plant *plant = &sim->plant;

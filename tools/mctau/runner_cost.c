@@ -76,7 +76,7 @@ mct_status runner_inputs(const mct_scene *scene, const run_options *options, uin
         bool diverged;
         return follow_loop(scene, ticks, inputs, NULL, &diverged, why);
     }
-    mct_input_init(&open_loop, scene, (mct_samples){options->samples, options->sample_count});
+    mct_input_init(&open_loop, scene, RUNNER_SAMPLES(options));
     for (uint64_t i = 0; i < ticks; i++) {
         inputs[i] = (double)mct_input_at(&open_loop, i);
     }

@@ -170,7 +170,7 @@ typedef struct {
     mctau_tick_t recorded; /* the present tick, in the arrays of which there is room below */
     mct_reading given;     /* its reading */
     mct_reading sensed;    /* the simulation's */
-    double wanted;         /* its input asked for, for inputs of kind csv */
+    mct_real wanted;       /* its input asked for, for inputs of kind csv */
     mct_timing timing;
     uint32_t injected; /* faults from outside that were latched at the last tick, see inject_faults */
 } replay;
@@ -400,7 +400,7 @@ static mct_status replay_decoded(replay *self)
     }
     self->given.age_us = (uint32_t)recorded->age_us;
     self->given.flags = (uint32_t)recorded->flags;
-    self->wanted = recorded->wanted;
+    self->wanted = (mct_real)recorded->wanted;
     inject_faults(self);
     if (recorded->rearmed) {
         mct_loop_rearm(&self->loop);

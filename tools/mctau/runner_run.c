@@ -436,7 +436,7 @@ static mct_status prepare(run *self, run_result *result, mct_message *why)
         return status;
     }
     status = mct_loop_init(&self->loop, &self->plan, scene, hal, wants_telemetry(self) ? &self->ring : NULL,
-                           (mct_samples){options->samples, options->sample_count}, why);
+                           RUNNER_SAMPLES(options), why);
     self->plant = hal.ops->plant(hal.context);
     self->limit = self->loop.supervisor.limit;
     status = status != MCT_OK ? status : open_csv(self, why);

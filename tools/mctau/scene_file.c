@@ -125,11 +125,19 @@ static int read_samples(scene_file *self)
     if (scene->input != MCT_INPUT_CSV) {
         return 0;
     }
+    csv_samples *samples = &self->samples;
     mct_message why;
     self->samples_path = beside(self->path, scene->input_file);
     const mct_status status =
-        csv_input_read(self->samples_path, scene->input_column, &self->samples, &self->sample_count, &why);
-    return status == MCT_OK ? 0 : say_status(status, &why);
+        csv_input_read(self->samples_path, scene->input_column, &samples->f64, &samples->count, &why);
+    if (status != MCT_OK) {
+        return say_status(status, &why);
+    }
+    samples->f32 = need_memory(calloc(samples->count + 1, sizeof *samples->f32));
+    for (size_t i = 0; i < samples->count; i++) {
+        samples->f32[i] = (float)samples->f64[i];
+    }
+    return 0;
 }
 
 static int choose_runner(scene_file *self)
@@ -194,7 +202,8 @@ bool is_same_file(const char *a, const char *b)
 void scene_file_free(scene_file *self)
 {
     free(self->text);
-    free(self->samples);
+    free(self->samples.f64);
+    free(self->samples.f32);
     free(self->samples_path);
     memset(self, 0, sizeof *self);
 }

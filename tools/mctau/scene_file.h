@@ -13,8 +13,7 @@ typedef struct {
     const arguments *given; /* the command line */
     const char *path;       /* as given; "-" is stdin */
     char *text; /* the file's text, and a line "#!set table.key=value" for each override: what a log keeps */
-    double *samples; /* of a csv input, one a tick; NULL without */
-    size_t sample_count;
+    csv_samples samples; /* none without */
     char *samples_path; /* where they came from */
     mct_scene scene;
     const mct_runner *runner; /* of the scene's precision */

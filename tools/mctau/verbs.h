@@ -14,5 +14,6 @@ extern const verb verb_pick;
 extern const verb verb_advise;
 extern const verb verb_hard;
 extern const verb verb_compile;
+extern const verb verb_import;
 
 #endif
