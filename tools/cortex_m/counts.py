@@ -172,11 +172,11 @@ class Code:
     def __init__(self, image):
         self.names, self.sizes = {}, {}
         for line in output(["arm-none-eabi-nm", "-S", image]).splitlines():
-            words = line.split()
-            if len(words) == 4 and words[2] in "tTwW":
-                address = int(words[0], 16) & ~1
-                self.names.setdefault(address, set()).add(words[3])
-                self.sizes[address] = max(self.sizes.get(address, 0), int(words[1], 16))
+            place, *size, kind, name = line.split()  # what libgcc has in assembler may have no size
+            if kind in "tTwW":
+                address = int(place, 16) & ~1
+                self.names.setdefault(address, set()).add(name)
+                self.sizes[address] = max(self.sizes.get(address, 0), int(size[0], 16) if size else 0)
         self.starts = sorted(self.names)
         self.callees = {start: set() for start in self.starts}
         for match in self.BRANCH.finditer(output(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image])):
