@@ -64,7 +64,6 @@ def test_the_vectors_begin_the_flash_and_those_of_can_stand_in_their_places(imag
 
 def test_what_a_tick_reaches_has_no_arithmetic_in_double(image):
     code = counts.Code(image)
-    code.callees[code.address_of("mct_input_at")] = set()  # of an open loop: a controller's tick never asks for it
     starts = [start for name in BY_POINTER for start in code.names if name in code.names[start]]
     assert {name for start in starts for name in code.names[start]} >= set(BY_POINTER)
     swing_up = next(start for start, names in code.names.items() if any(name.endswith("_swing_up") for name in names))
