@@ -8,7 +8,7 @@
 #define TURN 6.283185307179586476925
 
 /* Takes out whole counts, modulo 2^32, and leaves less than one. Without 64-bit integers, for numbers below 2^62. */
-static uint32_t take_whole(mct_real *counts)
+MCT_INLINE uint32_t take_whole(mct_real *counts)
 {
     const mct_real half_range = MCT_R(0x1p31);
     const int32_t high = (int32_t)(*counts / half_range);
@@ -19,7 +19,7 @@ static uint32_t take_whole(mct_real *counts)
 }
 
 /* A coordinate in counts: whole ones, modulo 2^32, and the rest. Both halves of the state go in. */
-static uint32_t counts_of(const mct_sim *sim, int i, mct_real *rest)
+MCT_INLINE uint32_t counts_of(const mct_sim *sim, int i, mct_real *rest)
 {
     const mct_sim_encoder *encoder = &sim->encoders[i];
     const mct_state *state = &sim->plant.state;
@@ -96,9 +96,14 @@ static void sense(const mct_sim *sim, mct_reading *reading)
     }
 }
 
-static bool has_fault(const mct_sim *sim, int32_t fault)
+/* The fault of this tick. */
+static int32_t fault_now(const mct_sim *sim)
 {
-    return sim->fault == fault && sim->plant.tick >= sim->fault_begin && sim->plant.tick < sim->fault_end;
+    if (sim->fault == MCT_SENSOR_FAULT_NONE) {
+        return MCT_SENSOR_FAULT_NONE;
+    }
+    const uint64_t tick = sim->plant.tick;
+    return tick >= sim->fault_begin && tick < sim->fault_end ? sim->fault : MCT_SENSOR_FAULT_NONE;
 }
 
 static mct_status sim_open(void *context, mct_message *why)
@@ -121,8 +126,9 @@ static mct_status sim_read(void *context, mct_reading *reading)
     const uint64_t tick = sim->plant.tick;
     const int32_t delay = (int32_t)(tick < sim->latency ? tick : sim->latency);
     const int32_t before = sim->newest - delay;
+    const int32_t fault = fault_now(sim);
     sense(sim, &sim->queue[sim->newest]);
-    if (has_fault(sim, MCT_SENSOR_FAULT_SILENT)) {
+    if (fault == MCT_SENSOR_FAULT_SILENT) {
         sim->silent_ticks++;
         *reading = sim->last;
         reading->flags = MCT_READING_MISSING;
@@ -130,10 +136,10 @@ static mct_status sim_read(void *context, mct_reading *reading)
         return MCT_OK;
     }
     sim->silent_ticks = 0;
-    if (has_fault(sim, MCT_SENSOR_FAULT_NAN)) {
+    if (fault == MCT_SENSOR_FAULT_NAN) {
         *reading = sim->last; /* a value that is not a number has no counts: the last valid ones are held */
         reading->flags = MCT_READING_INVALID;
-    } else if (has_fault(sim, MCT_SENSOR_FAULT_FROZEN)) {
+    } else if (fault == MCT_SENSOR_FAULT_FROZEN) {
         *reading = sim->last;
     } else {
         *reading = sim->queue[before < 0 ? before + MCT_MAX_LATENCY + 1 : before];

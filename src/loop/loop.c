@@ -16,13 +16,26 @@ mct_status mct_loop_init(mct_loop *loop, mct_plan *plan, const mct_scene *scene,
     return loop->controlled ? mct_controller_init(&loop->controller, &plan->model, scene, why) : MCT_OK;
 }
 
+/* The arrays are made for the largest system; of one with few coordinates the other half has never been set. */
+static void copy_state(mct_state *to, const mct_state *from, int coordinates)
+{
+    enum { HALF = MCT_MAX_STATES / 2 };
+    if (2 * coordinates + MCT_PHASES + 1 > HALF) {
+        *to = *from;
+        return;
+    }
+    memcpy(to->x, from->x, HALF * sizeof *to->x);
+    memcpy(to->c, from->c, HALF * sizeof *to->c);
+    memcpy(to->turns, from->turns, MCT_MAX_ENCODERS * sizeof *to->turns);
+}
+
 /* Fills the record of this tick but for what the HAL alone knows. */
 static void observe_hal(mct_loop *loop, mct_record *record)
 {
     const mct_state *plant = loop->hal.ops->plant(loop->hal.context);
     const mct_timing *timing = loop->hal.ops->timing(loop->hal.context);
     if (plant != NULL) {
-        record->plant = *plant;
+        copy_state(&record->plant, plant, loop->supervisor.system->coordinate_count);
     }
     record->late_us = timing->lateness.latest_us;
     if (loop->ring != NULL) {

@@ -54,8 +54,14 @@ static void settle(mct_plant *plant)
     }
 }
 
+/* An angle that swings about the hanging position is left alone. */
+MCT_INLINE bool is_beyond_a_turn(mct_real angle)
+{
+    return mct_size(angle) > turn;
+}
+
 /*
- * Takes whole turns out of an angle beyond +-2 pi; one that swings about the hanging position is left alone.
+ * Takes whole turns out of an angle beyond +-2 pi.
  * Turns are subtracted by powers of two from the largest down, so that each difference is exact; the rest of
  * a turn goes to the compensation. Returns how many.
  */
@@ -63,9 +69,6 @@ static int32_t take_turns(mct_state *state, int i)
 {
     enum { LARGEST = 28 }; /* MCT_STATE_BOUND is less than 2^28 turns */
     const mct_real x = state->x[i];
-    if (x <= turn && x >= -turn) {
-        return 0;
-    }
     const mct_real sign = x < 0 ? -1 : 1;
     const int32_t turns = (int32_t)(sign * x / turn);
     mct_real left = sign * x;
@@ -85,14 +88,14 @@ static void wrap_angles(mct_plant *plant)
     const mct_system *system = plant->system;
     mct_state *state = &plant->state;
     for (int i = 0; i < system->coordinate_count; i++) {
-        if (system->coordinates[i].is_angle) {
+        if (system->coordinates[i].is_angle && is_beyond_a_turn(state->x[i])) {
             /* Wraps after 2^31 turns, a year at 60 turns a second, as a counter does. */
             state->turns[i] = (int32_t)((uint32_t)state->turns[i] + (uint32_t)take_turns(state, i));
         }
     }
     if (system->phases != NULL) {
         for (int i = mct_rate_index(system) + system->coordinate_count; i < plant->states; i++) {
-            if (mct_state_is_phase_angle(system, i)) {
+            if (mct_state_is_phase_angle(system, i) && is_beyond_a_turn(state->x[i])) {
                 (void)take_turns(state, i);
             }
         }
