@@ -14,9 +14,8 @@
 typedef struct {
     double period_ns;
     int64_t start_ns;
-    uint64_t
-        tick; /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up; SysTick: its number */
-    int64_t woke;      /**< when the present tick began [ns; SysTick: cycles] */
+    uint64_t tick;     /**< of the next deadline, start_ns + tick * period_ns: no rounding adds up */
+    int64_t woke;      /**< when the present tick began [ns; by SysTick: cycles] */
     bool has_priority; /**< SCHED_FIFO was granted */
     bool has_memory;   /**< mlockall was granted */
     mct_timing timing;

@@ -68,8 +68,9 @@ static int compare_can(void)
     memcpy(&cans[1], &mct_compiled_can, sizeof made_can);
     forget_for_can(&cans[0]);
     forget_for_can(&cans[1]);
-    return memcmp(&cans[0], &cans[1], sizeof cans[0]) == 0 ? 0
-                                                           : fail("mct_compiled_can", "differs from mct_can_init");
+    return memcmp(&cans[0], &cans[1], sizeof cans[0]) == 0
+               ? 0
+               : fail("mct_compiled_can", "differs from mct_can_init");
 }
 
 /* What a tick reads by way of them is compared by running. */

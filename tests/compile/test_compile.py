@@ -1,5 +1,6 @@
 """`mctau compile`: what it writes is what init makes, compiled without a warning, and runs the same."""
 
+import json
 import os
 import shlex
 import subprocess
@@ -96,3 +97,23 @@ def test_what_is_wrong_is_said_and_nothing_is_written(mctau, source, tmp_path, a
     assert all(word in done.stderr for word in words), done.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["cart.toml"]
     assert cart.read_text() == (source / "scenes/cart_pole.toml").read_text()
+
+
+# --- the program of the README ---
+
+
+def test_the_firmware_of_the_readme_ends_where_a_run_does(mctau, source, build, tmp_path):
+    if not (build / LIBRARIES["float"]).exists():
+        pytest.skip("this build has no float")
+    for scene in ("cart_pole", "reaction_wheel"):
+        file = tmp_path / f"{scene}.c"
+        assert mctau("compile", source / "scenes" / f"{scene}.toml", "--precision", "float", "-o", file).returncode == 0
+        includes = [f"-I{folder}" for folder in (source / "include", source, build / "include/float")]
+        program = tmp_path / scene
+        subprocess.run([*shlex.split(os.environ.get("CC", "cc")), *FLAGS, *includes, source / "docs/examples/firmware.c", file,
+                        source / "tests/compile/board_by_sim.c", build / LIBRARIES["float"], "-lpthread", "-lrt", "-o", program],
+                       check=True)
+        done = subprocess.run([program], capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout
+        run = json.loads(mctau("run", source / "scenes" / f"{scene}.toml", "--precision", "float", "--json").stdout)
+        assert [float.fromhex(word) for word in done.stdout.split()] == list(run["state"].values()), scene

@@ -139,7 +139,7 @@ static void draw_state(const mct_controller *controller, test_random *random, do
 static void test_inside_the_region_full_input_catches_and_outside_it_does_not(void)
 {
     test_random random = {11};
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < CENTRAL_SYSTEMS + TEST_CASES(198); k++) {
         const mct_scene scene = k < 2 ? swing_up_scene(k) : random_scene(k % 2, &random);
         mct_controller controller;
         mct_constants constants;
@@ -167,7 +167,7 @@ static void test_inside_the_region_full_input_catches_and_outside_it_does_not(vo
 static void test_the_gains_bring_the_linear_model_home(void)
 {
     test_random random = {12};
-    for (int k = 0; k < 100; k++) {
+    for (int k = 0; k < CENTRAL_SYSTEMS + TEST_CASES(98); k++) {
         const mct_scene scene = k < 2 ? swing_up_scene(k) : random_scene(k % 2, &random);
         mct_controller controller;
         mct_constants constants;

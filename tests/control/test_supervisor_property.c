@@ -331,7 +331,7 @@ static void test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_
 {
     test_random random = {3};
     long driven = 0;
-    for (int k = 0; k < 1000000; k++) {
+    for (int k = 0; k < TEST_CASES(1000000); k++) {
         if (k % 50 == 0) {
             start((k / 50) % 2);
         }
@@ -353,7 +353,7 @@ static void test_whatever_comes_in_what_goes_out_is_finite_within_the_limit_and_
                                       !(reading.flags & MCT_READING_INVALID) && (out > 0) == (wanted > 0)));
         driven += out != 0;
     }
-    TEST_ASSERT_TRUE(driven > 100000);
+    TEST_ASSERT_TRUE(driven > TEST_CASES(100000));
 }
 
 /* ---- in the loop ---- */

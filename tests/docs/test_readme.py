@@ -63,8 +63,9 @@ def test_commands_that_are_not_run_exist(readme, source):
                 assert os.access(source / line.split()[0], os.X_OK), line
 
 
-def test_the_program_of_the_readme_is_the_committed_one(readme, source):
-    assert [text for text, _ in blocks(readme, "c")] == [(source / "docs/examples/minimal.c").read_text()]
+def test_the_programs_of_the_readme_are_the_committed_ones(readme, source):
+    examples = [source / "docs/examples" / name for name in ("minimal.c", "firmware.c")]
+    assert [text for text, _ in blocks(readme, "c")] == [example.read_text() for example in examples]
 
 
 def test_the_scene_of_the_readme_balances(readme, mctau, tmp_path):

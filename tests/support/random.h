@@ -6,8 +6,9 @@
 #include <stdint.h>
 
 /*
- * How many random cases a test tries: of many, a tenth in builds with sanitizers. Those are ten times as slow, and
- * judge accesses, which do not differ from number to number. In an emulator, which is a hundred times as slow, a hundredth.
+ * How many random cases a test tries, how many ticks it lasts: of many, a tenth in builds with sanitizers. Those are ten
+ * times as slow, and judge accesses, which do not differ from number to number. In an emulator, which is a hundred times
+ * as slow, a hundredth.
  */
 #ifndef MCT_TEST_FEWER
 #define MCT_TEST_FEWER 1

@@ -220,7 +220,7 @@ static void test_an_equilibrium_stays_one_exactly(void)
 /* What is turned back are the rates, and what rounding has kept back of them. */
 static void test_a_motion_that_is_turned_back_returns_to_its_start(void)
 {
-    enum { STEPS = 10000 };
+    enum { STEPS = TEST_CASES(10000) };
     static const int symmetric[] = {MCT_STEPPER_LEAP, MCT_STEPPER_SPLIT3};
     static mct_plant plant;
     int runs = 0;

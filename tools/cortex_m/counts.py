@@ -84,11 +84,16 @@ def compile_here(program, precision, sources, build):
     output(["cc", *options, *includes, *files, library, "-lpthread", "-lrt", "-o", program])
 
 
+def build_folder(target):
+    folder = ROOT / "build" / f"cortex-{TARGETS[target]}"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
 def build_target(target, name, file=None):
     """Path of an image, or another file, of hal/cortex_m/CMakeLists.txt, built anew where it is old."""
     kind = TARGETS[target]
-    folder = ROOT / "build" / f"cortex-{kind}"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = build_folder(target)
     with open(folder / ".lock", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # two at once would build one folder
         if not (folder / "build.ninja").exists():
@@ -167,11 +172,11 @@ class Code:
     def __init__(self, image):
         self.names, self.sizes = {}, {}
         for line in output(["arm-none-eabi-nm", "-S", image]).splitlines():
-            words = line.split()
-            if len(words) == 4 and words[2] in "tTwW":
-                address = int(words[0], 16) & ~1
-                self.names.setdefault(address, set()).add(words[3])
-                self.sizes[address] = max(self.sizes.get(address, 0), int(words[1], 16))
+            place, *size, kind, name = line.split()  # what libgcc has in assembler may have no size
+            if kind in "tTwW":
+                address = int(place, 16) & ~1
+                self.names.setdefault(address, set()).add(name)
+                self.sizes[address] = max(self.sizes.get(address, 0), int(size[0], 16) if size else 0)
         self.starts = sorted(self.names)
         self.callees = {start: set() for start in self.starts}
         for match in self.BRANCH.finditer(output(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image])):

@@ -13,6 +13,7 @@ import images
 FILE = counts.ROOT / "tests/golden/footprint.csv"
 WITHIN = 0.05  # growth that needs no line in the changelog
 FIGURES = ("flash", "data", "stack", "least", "mean", "most")
+BUDGET = images.BUDGET
 CENTRAL = ("cart_pole", "reaction_wheel")
 
 

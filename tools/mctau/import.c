@@ -23,9 +23,11 @@ const verb verb_import = {
     .name = "import",
     .doc = "makes an event log of the records that an image of a compiled scene has left",
     .operand = "SCENE",
-    .text = "An image of a scene (tools/flash) writes each tick's record as it is in memory. With the scene beside "
+    .text = "An image of a scene (tools/flash) writes each tick's record as it is in memory. With the scene "
+            "beside "
             "them they are\n"
-            "a log as mctau run --log writes it: mctau replay proves that every bit is the same here, and any LCM "
+            "a log as mctau run --log writes it: mctau replay proves that every bit is the same here, and "
+            "any LCM "
             "tool reads it.\n"
             "SCENE, --set and --precision are those that the image was made from.",
     .options = options,
@@ -34,7 +36,8 @@ const verb verb_import = {
                 "  mctau replay run.lcm\n",
     .exit_codes = "  0  written\n"
                   "  2  the command line, the scene or the records are wrong; there is no log\n"
-                  "  3  a file could not be read or written, or the records were cut: then the log has the whole ones\n",
+                  "  3  a file could not be read or written, or the records were cut: then the log has the "
+                  "whole ones\n",
     .run = import_verb,
 };
 
@@ -69,7 +72,8 @@ static int import_verb(const arguments *given)
     const char *records = arguments_value(given, "records"), *log = arguments_value(given, "o");
     scene_file file;
     if (records == NULL || log == NULL) {
-        return say(EXIT_USAGE, "%s: found none; allowed the name of a file", records == NULL ? "--records" : "-o");
+        return say(EXIT_USAGE, "%s: found none; allowed the name of a file",
+                   records == NULL ? "--records" : "-o");
     }
     int exit_code = scene_file_read(&file, given);
     if (exit_code == EXIT_WELL && (is_same_file(file.path, log) || is_same_file(records, log))) {

@@ -33,8 +33,9 @@ static mct_status read_head(FILE *file, const char *path, mct_message *why)
     }
     if (head.real_size != here.real_size) {
         return complain(MCT_ERROR_UNSUITED, path,
-                        head.real_size == sizeof(float) ? "found records in float; allowed with --precision float"
-                                                        : "found records in double; allowed with --precision double",
+                        head.real_size == sizeof(float)
+                            ? "found records in float; allowed with --precision float"
+                            : "found records in double; allowed with --precision double",
                         why);
     }
     return head.record_size == here.record_size
@@ -95,7 +96,8 @@ mct_status runner_import(const mct_scene *scene, const char *records, const run_
             if (status != MCT_OK) {
                 (void)unlink(options->log);
             } else if (telemetry->counts.log_errors > 0 || telemetry->counts.first_log_errno != 0) {
-                status = complain(MCT_ERROR_IO, options->log, strerror(telemetry->counts.first_log_errno), why);
+                status =
+                    complain(MCT_ERROR_IO, options->log, strerror(telemetry->counts.first_log_errno), why);
             }
         }
     }
