@@ -83,7 +83,7 @@ void mct_loop_tick(mct_loop *loop)
     const mct_real *estimate = NULL;
     if (loop->controlled) {
         record->wanted = mct_controller_update(&loop->controller, &record->reading, loop->applied);
-        record->mode = loop->controller.mode;
+        record->mode = (int32_t)loop->controller.mode;
         estimate = loop->controller.observer.x;
         memcpy(record->estimate, estimate, sizeof record->estimate);
         mct_supervisor_watch_balance(supervisor, record->mode == MCT_MODE_BALANCE);
