@@ -227,6 +227,33 @@ static void test_positions_start_where_the_scene_says_and_angles_stay_within_hal
     }
 }
 
+/* Far beyond what a counter of 32 bits shows, there and back. Tolerance: roundings of the position, once it has settled. */
+static void test_a_length_is_counted_beyond_32_bits(void)
+{
+    enum { STEPS = 1000, REST = 300 };
+    static const int64_t ways[] = {1000000000000, -1000000000000, 3, -1 - (INT64_C(1) << 30),
+                                   INT64_C(1) << 32};
+    static bench self;
+    mct_scene scene = scene_of(CART_POLE, MCT_STEPPER_RK4, 0);
+    scene.counts_per_unit[0] = 1e9;
+    scene.observer_bandwidth = BANDWIDTH;
+    scene.initial[0] = 0.25;
+    start(&self, &scene, 0);
+    feed(&self, 0, 0);
+    int64_t from = 0;
+    for (size_t n = 0; n < sizeof ways / sizeof ways[0]; n++) {
+        for (int64_t k = 1; k <= STEPS + REST; k++) { /* by less than 2^31 counts each */
+            const int64_t counts = k < STEPS ? from + (ways[n] - from) / STEPS * k : ways[n];
+            mct_reading reading = {{(int32_t)(uint32_t)(uint64_t)counts, 0}, 0, 0};
+            mct_observer_update(&self.observer, &reading, 0);
+        }
+        const double exact = 0.25 + (double)ways[n] * 1e-9;
+        TEST_ASSERT_DOUBLE_WITHIN(4 * (double)MCT_REAL_EPSILON * (1 + fabs(exact)), exact,
+                                  (double)self.observer.x[0]);
+        from = ways[n];
+    }
+}
+
 static void test_the_very_first_estimate_of_an_angle_is_within_half_a_turn(void)
 {
     static bench self;
@@ -335,6 +362,7 @@ int main(void)
     RUN_TEST(test_a_right_model_leaves_no_lag);
     RUN_TEST(test_a_counters_width_and_its_wrap_change_no_bit_of_an_estimate);
     RUN_TEST(test_positions_start_where_the_scene_says_and_angles_stay_within_half_a_turn);
+    RUN_TEST(test_a_length_is_counted_beyond_32_bits);
     RUN_TEST(test_the_very_first_estimate_of_an_angle_is_within_half_a_turn);
     RUN_TEST(test_missing_readings_lose_no_count_and_keep_the_rate);
     RUN_TEST(test_a_jump_after_a_long_gap_moves_the_position_and_not_the_rate);
