@@ -1,7 +1,5 @@
 #include "semihosting.h"
 
-#include <string.h>
-
 #include "start.h"
 
 enum {
@@ -36,7 +34,11 @@ int mct_semihosting_command_line(char *text, size_t size)
 
 int32_t mct_semihosting_open(const char *path, bool writes)
 {
-    const uintptr_t block[3] = {(uintptr_t)path, writes ? MODE_WRITE_BINARY : MODE_READ_BINARY, strlen(path)};
+    size_t length = 0;
+    while (path[length] != '\0') { /* newlib's strlen is 200 bytes */
+        length++;
+    }
+    const uintptr_t block[3] = {(uintptr_t)path, writes ? MODE_WRITE_BINARY : MODE_READ_BINARY, length};
     return call(SYS_OPEN, block);
 }
 

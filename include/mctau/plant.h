@@ -21,9 +21,13 @@ typedef struct {
     mct_motion motion;
 } mct_stride;
 
-typedef struct {
+typedef struct mct_plant {
     const mct_system *system;
     mct_kernel kernel;
+    /** What saturation leaves of an input, one of the functions below; NULL without saturation. */
+    mct_real (*limit)(const struct mct_plant *plant, mct_real input);
+    /** Advances by a tick where a step goes over several, mct_plant_stride(); NULL: the kernel does. */
+    void (*advance)(struct mct_plant *plant, bool is_new);
     uint32_t effects; /**< as simulated, see mct_scene_effects */
     int32_t states;
     int32_t entries;  /**< of the state that the kernel uses: the states, and perhaps the time behind them */
@@ -56,6 +60,14 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
  * off, two thirds of one by `rk4`. Not thread-safe per plant.
  */
 void mct_plant_step(mct_plant *plant, mct_real input);
+
+/**
+ * What a plant may hold as `limit` and `advance`, by name for a program that was compiled: one whose scene has no
+ * saturation, or no stride, holds none of it.
+ */
+mct_real mct_plant_within_voltage(const mct_plant *plant, mct_real input);
+mct_real mct_plant_within_current(const mct_plant *plant, mct_real input);
+void mct_plant_stride(mct_plant *plant, bool is_new);
 
 /** Value of state `index` in double, whole turns included. */
 double mct_plant_value(const mct_plant *plant, int index);

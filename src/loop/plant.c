@@ -153,7 +153,8 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
         mct_message_add(why, " has no series to hand");
         return MCT_ERROR_UNSUITED;
     }
-    const bool bounded = (plant->effects & MCT_SATURATION_VOLTAGE) && (plant->effects & MCT_MOTOR);
+    const bool has_motor = (plant->effects & MCT_MOTOR) != 0;
+    const bool bounded = has_motor && (plant->effects & MCT_SATURATION_VOLTAGE);
     plant->substeps = scene->substeps;
     plant->stride.ticks = scene->stride;
     plant->bound =
@@ -163,6 +164,10 @@ mct_status mct_plant_init(mct_plant *plant, const mct_scene *scene, mct_message 
         plant->drop = (mct_real)(scene->parameters[actuation->current_limit_parameter] *
                                  scene->parameters[actuation->resistance_parameter]);
     }
+    plant->limit = has_motor && (plant->effects & MCT_SATURATION_CURRENT) ? mct_plant_within_current
+                   : bounded                                              ? mct_plant_within_voltage
+                                                                          : NULL;
+    plant->advance = scene->stride > 1 ? mct_plant_stride : NULL;
     plant->states = mct_state_count(scene);
     plant->entries = plant->states + (plant->system->is_timed ? 1 : 0);
     mct_state_set(plant->system, plant->states, scene->initial, &plant->state);
@@ -189,7 +194,7 @@ static void changes_after(const mct_motion *motion, mct_real f, mct_real *change
 }
 
 /* One tick further along the step that the stride is in, or on a new one. */
-static void advance_stride(mct_plant *plant, bool is_new)
+void mct_plant_stride(mct_plant *plant, bool is_new)
 {
     mct_stride *stride = &plant->stride;
     mct_real change[MCT_MOTION_STATES];
@@ -211,26 +216,33 @@ static void advance_stride(mct_plant *plant, bool is_new)
     }
 }
 
+mct_real mct_plant_within_voltage(const mct_plant *plant, mct_real input)
+{
+    return mct_clamp(input, plant->bound);
+}
+
 /*
  * The voltage that a drive gives when it bounds its current: one that drives no more than that through the motor at
  * its present speed.
  */
-static mct_real within_current(const mct_plant *plant, mct_real voltage)
+mct_real mct_plant_within_current(const mct_plant *plant, mct_real input)
 {
     const mct_actuation *actuation = plant->system->actuation;
     const mct_motor *motor = actuation->motor(&plant->constants);
     const int rate = plant->system->coordinate_count + actuation->driven_coordinate;
     const mct_real emf = motor->emf * plant->state.x[rate];
-    const mct_real drop = voltage - emf;
-    return drop > plant->drop ? emf + plant->drop : drop < -plant->drop ? emf - plant->drop : voltage;
+    const mct_real drop = input - emf;
+    const mct_real within = drop > plant->drop    ? emf + plant->drop
+                            : drop < -plant->drop ? emf - plant->drop
+                                                  : input;
+    return mct_plant_within_voltage(plant, within);
 }
 
 void mct_plant_step(mct_plant *plant, mct_real input)
 {
     const mct_real before = plant->input;
     if (mct_finite(input)) {
-        const bool is_driven = (plant->effects & MCT_SATURATION_CURRENT) && (plant->effects & MCT_MOTOR);
-        plant->input = mct_clamp(is_driven ? within_current(plant, input) : input, plant->bound);
+        plant->input = plant->limit != NULL ? plant->limit(plant, input) : input;
     } else {
         plant->rejected_inputs++;
     }
@@ -240,8 +252,8 @@ void mct_plant_step(mct_plant *plant, mct_real input)
         x[i] = plant->state.x[i];
         c[i] = plant->state.c[i];
     }
-    if (plant->stride.ticks > 1) {
-        advance_stride(plant, plant->input != before);
+    if (plant->advance != NULL) {
+        plant->advance(plant, plant->input != before);
     } else {
         plant->kernel(&plant->constants, &plant->state, plant->input, plant->substeps);
     }

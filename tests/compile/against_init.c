@@ -85,6 +85,8 @@ static void forget_pointers(mct_loop *loop, mct_sim *sim)
     loop->supervisor.system = NULL;
     sim->plant.system = NULL;
     sim->plant.kernel = NULL;
+    sim->plant.limit = NULL;
+    sim->plant.advance = NULL;
 }
 
 static int compare_structs(void)

@@ -57,14 +57,14 @@ def test_the_controller_alone_answers_with_the_twins_voltages(flashed, scene):
 
 
 def test_records_that_differ_are_seen(emulator, source, tmp_path):
-    """A controller for other gains, fed with the records of the scene."""
+    """Another controller, fed with the records of the scene."""
     records = tmp_path / "records"
     path = source / "scenes/cart_pole.toml"
     with images.compiled(path, "float") as scene:
         images.run(images.build(scene, "twin", "sil"), "sil", records, 2000)
-    with images.compiled(path, "float", ["weights.pole_angle=0.01"]) as scene:
+    with images.compiled(path, "float", ["controller.energy_band=3"]) as scene:
         run = images.run(images.build(scene, "controller", "qemu-m4f"), "qemu-m4f", records)
-    assert run["ticks"] == 2000 and 0 < run["differing"] < 2000 and run["first_differing"] > 0
+    assert run["ticks"] == 2000 and run["differing"] > 0
 
 
 # --- what it takes ---
@@ -77,14 +77,16 @@ def twins(emulator):
     for name in CENTRAL:
         with images.compiled(counts.ROOT / f"scenes/{name}.toml", "float") as scene:
             image = images.build(scene, "twin", "qemu-m4f")
-            names = set().union(*counts.Code(image).names.values())
-            found[name] = images.memory(image), images.run(image, "qemu-m4f", "-"), names, scene.kernel
+            code = counts.Code(image)
+            names = set().union(*code.names.values())
+            reached = code.names_from(code.address_of(scene.kernel))
+            found[name] = images.memory(image), images.run(image, "qemu-m4f", "-"), names, scene.kernel, reached
     return found
 
 
 @pytest.mark.parametrize("scene", CENTRAL)
 def test_a_twin_fits_into_a_small_part(twins, scene):
-    memory, run, _, _ = twins[scene]
+    memory, run, *_ = twins[scene]
     assert memory["flash"] <= MOST_FLASH
     assert memory["ram"] <= MOST_RAM
     assert run["stack_used"] <= memory["stack"] <= MOST_STACK
@@ -92,31 +94,34 @@ def test_a_twin_fits_into_a_small_part(twins, scene):
 
 @pytest.mark.parametrize("scene", CENTRAL)
 def test_an_image_has_one_kernel_no_double_no_heap_and_no_stdio(twins, scene):
-    _, _, names, kernel = twins[scene]
-    assert kernel in names
-    assert [name for name in names if re.fullmatch(rf"mct_{scene}_[a-z0-9]+_[s0-9][0-9_]*", name)] == [kernel]
+    _, _, names, kernel, reached = twins[scene]
+    kernels = {name for name in names if re.fullmatch(rf"mct_{scene}_[a-z0-9]+_[s0-9][0-9_]*", name)}
+    assert kernels <= reached and kernel in kernels # and those that the compiler found to be the same code
     assert not [name for name in names if re.match(r"__aeabi_(c?d(?!iv)|\w+2d)|__\w*df\d", name)]
     assert not names & {"malloc", "free", "_malloc_r", "_sbrk", "printf", "vfprintf", "_vfprintf_r", "fopen", "puts"}
     assert not names & {"mct_scene_read", "mct_plant_init", "mct_loop_init", f"mct_{scene}"}
 
 
-def test_a_tick_takes_few_instructions(twins, flashed):
-    assert twins["reaction_wheel"][1]["instructions"]["most"] <= 1200
+# On, off; all else as the scene has it, by rk4. (By `leap` and `expo`, viscous friction stands in matrices and takes no code.)
+EFFECTS = [
+    ("effects.viscous=true", "effects.viscous=false"),
+    ("effects.drag=true", "effects.drag=false"),
+    ("effects.coulomb=moreau", "effects.coulomb=off"),
+    ("effects.motor=inductive", "effects.motor=quasi_static"),
+    ("effects.saturation=current", "effects.saturation=voltage"),
+    ("effects.saturation=voltage", "effects.saturation=off"),
+]
 
 
 @pytest.mark.parametrize("scene", CENTRAL)
 def test_an_effect_that_is_off_takes_less_flash(emulator, source, scene):
-    def size(*assignments):
-        path = source / "scenes" / f"{scene}.toml"
-        with images.compiled(path, "float", ["scene.stepper=rk4", "effects.motor=inductive", *assignments]) as one:
+    def size(assignment):
+        slow_motor = ["scene.stepper=rk4", "parameters.inductance=0.01"]  # which rk4 follows
+        with images.compiled(source / "scenes" / f"{scene}.toml", "float", [*slow_motor, assignment]) as one:
             return images.memory(images.build(one, "twin", "qemu-m4f"))["flash"]
 
-    all_on = ["effects.coulomb=moreau", "effects.drag=true"]
-    whole = size(*all_on)
-    off = {"viscous": "effects.viscous=false", "coulomb": "effects.coulomb=off", "drag": "effects.drag=false",
-           "inductance": "effects.motor=quasi_static"}
-    for what, assignment in off.items():
-        assert size(*all_on, assignment) < whole, what
+    for on, off in EFFECTS:
+        assert size(off) < size(on), off
 
 
 # --- what is wrong ---

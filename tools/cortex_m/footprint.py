@@ -42,7 +42,7 @@ def rows():
             Row(scene, "scene.stepper=rk4"),
             Row(scene, "scene.stepper=rk4 effects.viscous=false"),
             Row(scene, "scene.stepper=rk4 effects.saturation=off"),
-            Row(scene, "scene.stepper=rk4 effects.motor=inductive"),
+            Row(scene, "scene.stepper=leap effects.motor=inductive"),
             Row(scene, "scene.stepper=rk4 effects.coulomb=moreau"),
             Row(scene, "scene.stepper=rk4 effects.drag=true"),
         ]

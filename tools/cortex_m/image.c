@@ -12,16 +12,17 @@ bool image_word(int number, char word[IMAGE_WORD])
     if (mct_semihosting_command_line(line, sizeof line) != 0) {
         return false;
     }
-    const char *from = line;
-    for (; number > 0 && from != NULL; number--) {
-        from = strchr(from, ' ');
-        from = from != NULL ? from + 1 : NULL;
+    size_t length = 0;
+    for (const char *c = line; *c != '\0'; c++) {
+        if (*c == ' ') {
+            number--;
+        } else if (number == 0 && length < IMAGE_WORD) {
+            word[length++] = *c;
+        }
     }
-    const size_t length = from != NULL ? strcspn(from, " ") : 0;
-    if (length == 0 || length >= IMAGE_WORD) {
+    if (length == 0 || length == IMAGE_WORD) {
         return false;
     }
-    memcpy(word, from, length);
     word[length] = '\0';
     return true;
 }

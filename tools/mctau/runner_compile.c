@@ -393,6 +393,14 @@ static void put_plant(text *self, const mct_plant *from, const char *kernel)
     begin(self, "plant");
     put_text(self, "system", "&scene_system");
     put_text(self, "kernel", kernel);
+    if (from->limit != NULL) {
+        put_text(self, "limit",
+                 from->limit == mct_plant_within_current ? "mct_plant_within_current"
+                                                         : "mct_plant_within_voltage");
+    }
+    if (from->advance != NULL) {
+        put_text(self, "advance", "mct_plant_stride");
+    }
     MASK(effects);
     INTEGER(states);
     INTEGER(entries);
