@@ -4,10 +4,32 @@
 
 #define TAYLOR_DEGREE 15 /* with a norm of 1/2, the first term left out is 2^-15 / 16!, below 2^-59 */
 
+/*
+ * The root of mantissa 2^digits, mantissa being below 4 and having `digits` binary digits behind its point: digit by digit,
+ * and one more to round by, as a root is never half-way between two numbers.
+ */
+static uint64_t rounded_root(uint64_t mantissa, int digits)
+{
+    uint64_t rest = mantissa << 1;
+    uint64_t twice_root = 0;
+    uint64_t root = 0;
+    for (uint64_t bit = UINT64_C(2) << digits; bit != 0; bit >>= 1) {
+        const uint64_t trial = twice_root + bit;
+        if (trial <= rest) {
+            rest -= trial;
+            twice_root = trial + bit;
+            root += bit;
+        }
+        rest <<= 1;
+    }
+    return (root + 1) >> 1;
+}
+
+/* A NaN is given as bits, since 0/0 differs in sign between machines. */
 double mct_sqrt(double x)
 {
     if (!(x > 0.0 && x <= DBL_MAX)) {
-        const uint64_t quiet = UINT64_C(0x7ff8000000000000); /* 0/0 differs in sign between machines */
+        const uint64_t quiet = UINT64_C(0x7ff8000000000000);
         double nan;
         memcpy(&nan, &quiet, sizeof nan);
         return x < 0.0 ? nan : x;
@@ -20,28 +42,39 @@ double mct_sqrt(double x)
     const int odd = exponent & 1;
     const uint64_t one = UINT64_C(1) << 52;
     const uint64_t mantissa = ((bits & (one - 1)) | one) << odd; /* x = mantissa 2^(exponent - odd - 52) */
-
-    /* Digit by digit, 53 bits and one more to round by: a root is never half-way between two doubles. */
-    uint64_t rest = mantissa << 1;
-    uint64_t twice_root = 0;
-    uint64_t root = 0;
-    for (uint64_t bit = one << 1; bit != 0; bit >>= 1) {
-        const uint64_t trial = twice_root + bit;
-        if (trial <= rest) {
-            rest -= trial;
-            twice_root = trial + bit;
-            root += bit;
-        }
-        rest <<= 1;
-    }
     /* The leading bit of the rounded root counts as one in the exponent's field. */
-    const uint64_t rounded = (root + 1) >> 1;
     const int field = (exponent - odd) / 2 + 1022;
-    const uint64_t result_bits = ((uint64_t)field << 52) + rounded;
+    const uint64_t result_bits = ((uint64_t)field << 52) + rounded_root(mantissa, 52);
     double result;
     memcpy(&result, &result_bits, sizeof result);
     return subnormal ? result * 0x1p-27 : result;
 }
+
+#if MCT_REAL_IS_FLOAT
+/* The same in single precision. */
+mct_real mct_sqrt_real(mct_real x)
+{
+    if (!(x > 0 && x <= FLT_MAX)) {
+        const uint32_t quiet = UINT32_C(0x7fc00000);
+        mct_real nan;
+        memcpy(&nan, &quiet, sizeof nan);
+        return x < 0 ? nan : x;
+    }
+    const bool subnormal = x < FLT_MIN;
+    const mct_real normal = subnormal ? x * 0x1p24F : x;
+    uint32_t bits;
+    memcpy(&bits, &normal, sizeof bits);
+    const int exponent = (int)(bits >> 23) - 127;
+    const int odd = exponent & 1;
+    const uint32_t one = UINT32_C(1) << 23;
+    const uint64_t mantissa = (uint64_t)((bits & (one - 1)) | one) << odd;
+    const int field = (exponent - odd) / 2 + 126;
+    const uint32_t result_bits = ((uint32_t)field << 23) + (uint32_t)rounded_root(mantissa, 23);
+    mct_real result;
+    memcpy(&result, &result_bits, sizeof result);
+    return subnormal ? result * 0x1p-12F : result;
+}
+#endif
 
 void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b, double *product)
 {

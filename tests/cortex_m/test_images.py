@@ -12,6 +12,7 @@ import pytest
 
 CENTRAL = ("cart_pole", "reaction_wheel")
 SECONDS_30 = 30000  # ticks
+DOUBLE = re.compile(r"__aeabi_(c?d(?!iv)|\w+2d|d2\w+)|__\w*df\d")
 # A twin's limits on a Cortex-M4F, in float.
 MOST_FLASH, MOST_RAM, MOST_STACK = 24 * 1024, 4 * 1024, 1024
 
@@ -56,6 +57,13 @@ def test_the_controller_alone_answers_with_the_twins_voltages(flashed, scene):
     assert found["equal_bits"] and found["run"]["differing"] == 0 and found["run"]["ticks"] == SECONDS_30
 
 
+def test_no_float_image_of_a_ready_scene_has_arithmetic_in_double(emulator, source):
+    for path in sorted((source / "scenes").glob("*.toml")):
+        with images.compiled(path, "float") as scene:
+            names = set().union(*counts.Code(images.build(scene, "twin", "qemu-m4f")).names.values())
+        assert not [name for name in names if DOUBLE.match(name)], path.stem
+
+
 def test_records_that_differ_are_seen(emulator, source, tmp_path):
     """Another controller, fed with the records of the scene."""
     records = tmp_path / "records"
@@ -97,7 +105,7 @@ def test_an_image_has_one_kernel_no_double_no_heap_and_no_stdio(twins, scene):
     _, _, names, kernel, reached = twins[scene]
     kernels = {name for name in names if re.fullmatch(rf"mct_{scene}_[a-z0-9]+_[s0-9][0-9_]*", name)}
     assert kernels <= reached and kernel in kernels # and those that the compiler found to be the same code
-    assert not [name for name in names if re.match(r"__aeabi_(c?d(?!iv)|\w+2d)|__\w*df\d", name)]
+    assert not [name for name in names if DOUBLE.match(name)]
     assert not names & {"malloc", "free", "_malloc_r", "_sbrk", "printf", "vfprintf", "_vfprintf_r", "fopen", "puts"}
     assert not names & {"mct_scene_read", "mct_plant_init", "mct_loop_init", f"mct_{scene}"}
 

@@ -90,16 +90,23 @@ static void test_square_root_of_what_has_none_is_nan_or_itself(void)
     TEST_ASSERT_TRUE(mct_sqrt(-0.0) == 0.0 && signbit(mct_sqrt(-0.0)));
 }
 
-static void test_square_root_of_the_core_is_correctly_rounded(void)
+static void test_square_root_of_the_core_is_correctly_rounded_wherever_it_is(void)
 {
+    const mct_real least = MCT_REAL_IS_FLOAT ? (mct_real)FLT_MIN : (mct_real)DBL_MIN;
+    const mct_real ends[] = {0, MCT_REAL_MAX, least, least / 2, least * MCT_REAL_EPSILON};
     for (int i = 0; i < 100000; i++) {
-        const mct_real x = (mct_real)(random_number() + 1.0);
+        const int exponent = (int)(random_number() * (MCT_REAL_IS_FLOAT ? 277 : 2098));
+        const double drawn = ldexp(random_number() + 1.0, exponent - (MCT_REAL_IS_FLOAT ? 149 : 1074));
+        const mct_real x = i < 5 ? ends[i] : (mct_real)drawn;
 #if MCT_REAL_IS_FLOAT
         TEST_ASSERT_TRUE(mct_sqrt_real(x) == sqrtf(x));
 #else
         TEST_ASSERT_TRUE(mct_sqrt_real(x) == sqrt(x));
 #endif
     }
+    const mct_real of_negative = mct_sqrt_real(-1);
+    TEST_ASSERT_TRUE(isnan(of_negative) && !signbit(of_negative));
+    TEST_ASSERT_TRUE(isinf(mct_sqrt_real((mct_real)INFINITY)) && signbit(mct_sqrt_real(MCT_R(-0.0))));
 }
 
 static void test_products_and_transposes_take_any_shape(void)
@@ -323,7 +330,7 @@ int main(void)
     RUN_TEST(test_square_root_is_exact_for_squares_and_rounds_their_neighbours);
     RUN_TEST(test_square_root_covers_the_ends_of_the_range);
     RUN_TEST(test_square_root_of_what_has_none_is_nan_or_itself);
-    RUN_TEST(test_square_root_of_the_core_is_correctly_rounded);
+    RUN_TEST(test_square_root_of_the_core_is_correctly_rounded_wherever_it_is);
     RUN_TEST(test_products_and_transposes_take_any_shape);
     RUN_TEST(test_elimination_leaves_a_residual_of_rounding);
     RUN_TEST(test_inverse_times_matrix_is_one);
