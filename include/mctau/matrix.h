@@ -46,14 +46,7 @@ MCT_INLINE bool mct_is_finite(double x)
 double mct_sqrt(double x);
 
 /** The square root in the core's precision, without arithmetic in another; correctly rounded in both. */
-#if MCT_REAL_IS_FLOAT
 mct_real mct_sqrt_real(mct_real x);
-#else
-MCT_INLINE mct_real mct_sqrt_real(mct_real x)
-{
-    return mct_sqrt(x);
-}
-#endif
 
 /** product = a b, for a (rows x inner), b (inner x columns); the product must not overlap a or b. */
 void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b, double *product);

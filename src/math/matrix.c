@@ -74,6 +74,11 @@ mct_real mct_sqrt_real(mct_real x)
     memcpy(&result, &result_bits, sizeof result);
     return subnormal ? result * 0x1p-12F : result;
 }
+#else
+mct_real mct_sqrt_real(mct_real x)
+{
+    return mct_sqrt(x);
+}
 #endif
 
 void mct_matrix_multiply(int rows, int inner, int columns, const double *a, const double *b, double *product)
