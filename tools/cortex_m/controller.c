@@ -44,10 +44,10 @@ static void nothing(void *context)
     (void)context;
 }
 
-static const mct_state *recorded_plant(void *context)
+static const mct_state *no_plant(void *context)
 {
-    const mct_record *recorded = context;
-    return &recorded->plant;
+    (void)context;
+    return NULL;
 }
 
 static const mct_timing *no_timing(void *context)
@@ -72,7 +72,7 @@ static const mct_hal_ops recorded_hal = {
     .stop = nothing,
     .arm = nothing,
     .close = nothing,
-    .plant = recorded_plant,
+    .plant = no_plant,
     .timing = no_timing,
     .counters = no_counters,
 };
@@ -100,6 +100,7 @@ int main(void)
     loop.hal = (mct_hal){&recorded_hal, &recorded};
     uint64_t differing = 0, first = 0;
     while (mct_semihosting_read(file, &recorded, sizeof recorded) == (int32_t)sizeof recorded) {
+        memset(&recorded.plant, 0, sizeof recorded.plant); /* nobody knows it on a robot */
         image_tick(&loop, &counts);
         hash = image_hash(hash, &loop.record, sizeof loop.record);
         if (memcmp(&loop.record, &recorded, sizeof recorded) != 0 && differing++ == 0) {

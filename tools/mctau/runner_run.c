@@ -190,7 +190,7 @@ static void write_row(run *self, const mct_record *record)
     }
     used = add_number(line, used, sizeof line, (double)record->wanted);
     used = add_number(line, used, sizeof line, (double)record->applied);
-    used = add(line, used, sizeof line, mct_mode_name(record->mode));
+    used = add(line, used, sizeof line, mct_mode_name((mct_mode)record->mode));
     used = add_faults(line, used, sizeof line, record->faults);
     line[used++] = '\n';
     csv_output_row(&self->csv, line, used);
@@ -590,7 +590,7 @@ static void fill_result(run *self, run_result *result)
     result->realtime = self->realtime;
     result->limit = supervisor->limit < MCT_REAL_MAX ? (double)supervisor->limit : (double)INFINITY;
     result->controlled = self->loop.controlled;
-    result->mode = mct_mode_name(self->loop.record.mode);
+    result->mode = mct_mode_name((mct_mode)self->loop.record.mode);
     result->deviation = (double)self->deviation;
     result->least_deviation = (double)self->least_deviation;
     result->worst_after_upright = (double)self->worst_deviation;
