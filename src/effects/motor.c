@@ -1,9 +1,9 @@
-#include "mctau/motor.h"
+#include "motor.h"
 
 #include <string.h>
 
-#include "mctau/effects.h"
 #include "mctau/matrix.h"
+#include "mctau/message.h"
 
 mct_status mct_motor_prepare(mct_motor *motor, uint32_t effects, double ratio, double torque_constant,
                              double back_emf_constant, double resistance, double inductance, double h)
@@ -41,4 +41,18 @@ mct_status mct_motor_prepare(mct_motor *motor, uint32_t effects, double ratio, d
     motor->end_from_current = (mct_real)phi[0];
     motor->end_from_voltage = (mct_real)(h / inductance * phi[1]);
     return status;
+}
+
+void mct_motor_refuse(double resistance, double inductance, struct mct_message *why)
+{
+    if (resistance > 0) {
+        mct_message_add(why, "parameters.inductance: found ");
+        mct_message_add_number(why, inductance);
+        mct_message_add(why, " H, with which the current settles within ");
+        mct_message_add_number(why, inductance / resistance);
+        mct_message_add(why, " s; allowed 0, or from 1e-18 of a step on");
+    } else {
+        mct_message_add(
+            why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
+    }
 }

@@ -18,6 +18,9 @@
 #include "mctau/motor.h"
 #include "mctau/system.h"
 
+/* Says which parameter makes mct_motor_prepare() fail. */
+void mct_motor_refuse(double resistance, double inductance, struct mct_message *why);
+
 /*
  * Force of the drive, but for the damping of a quasi-static motor, which joins the viscous one. `current` is
  * that of an inductive motor, or its mean over a step; not read otherwise.

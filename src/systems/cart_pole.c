@@ -143,8 +143,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
                           p[BACK_EMF_CONSTANT], p[RESISTANCE], p[INDUCTANCE], h);
     k->cart_damping = k->cart_viscous + ((effects & MCT_MOTOR_QUASI_STATIC) ? k->motor.damping : 0);
     if (status == MCT_ERROR_RANGE) {
-        mct_message_add(
-            why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
+        mct_motor_refuse(p[RESISTANCE], p[INDUCTANCE], why);
     }
     return status;
 }

@@ -206,8 +206,7 @@ static mct_status prepare(const struct mct_scene *scene, double h, void *constan
     mct_status status = mct_motor_prepare(&k->motor, effects, 1, p[TORQUE_CONSTANT], p[BACK_EMF_CONSTANT],
                                           p[RESISTANCE], p[INDUCTANCE], h);
     if (status == MCT_ERROR_RANGE) {
-        mct_message_add(
-            why, "parameters.resistance: found 0 ohm with a motor that has no inductance; allowed above 0");
+        mct_motor_refuse(p[RESISTANCE], p[INDUCTANCE], why);
     }
     if (status != MCT_OK) {
         return status;

@@ -145,7 +145,21 @@ static void test_a_motor_with_neither_resistance_nor_inductance_is_refused(void)
         mct_plant plant;
         mct_message why = {""};
         TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_plant_init(&plant, &scene, &why));
-        TEST_ASSERT_TRUE(why.text[0] != 0);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why.text, "parameters.resistance: found 0 ohm"), why.text);
+    }
+}
+
+static void test_a_current_that_settles_at_once_is_refused_by_its_inductance(void)
+{
+    for (int system = 0; system < CENTRAL_SYSTEMS; system++) {
+        const mct_scene scene = scene_with_motor(system, MCT_STEPPER_LEAP, 1e6, 1e-17);
+        mct_plant plant;
+        mct_message why = {""};
+        TEST_ASSERT_EQUAL_INT(MCT_ERROR_RANGE, mct_plant_init(&plant, &scene, &why));
+        TEST_ASSERT_NOT_NULL_MESSAGE(
+            strstr(why.text,
+                   "parameters.inductance: found 1e-17 H, with which the current settles within 1e-23 s"),
+            why.text);
     }
 }
 
@@ -185,6 +199,7 @@ int main(void)
     RUN_TEST(test_the_gap_to_the_quasi_static_motor_is_linear_in_its_time_constant);
     RUN_TEST(test_a_motor_without_resistance_is_finite_and_its_current_follows_the_way);
     RUN_TEST(test_a_motor_with_neither_resistance_nor_inductance_is_refused);
+    RUN_TEST(test_a_current_that_settles_at_once_is_refused_by_its_inductance);
     RUN_TEST(test_a_wheel_at_1e4_rad_per_s_slows_monotonically_to_the_voltage_over_k);
     return UNITY_END();
 }

@@ -115,6 +115,19 @@ static void test_equation_452_holds_as_corrected_and_not_as_printed(void)
     TEST_ASSERT_TRUE(fabs((double)out.acceleration[0] + 1 / (b * m)) > 1);
 }
 
+static void test_a_sphere_that_stops_at_once_is_refused_in_a_sentence(void)
+{
+    mct_scene scene = scene_of(sphere(), MCT_STEPPER_EXPO, MCT_STOKES);
+    mct_constants constants;
+    mct_message why = {""};
+    *parameter_of(&scene, "radius") = 1e-7;
+    *parameter_of(&scene, "density") = 1e-3;
+    *parameter_of(&scene, "fluid_viscosity") = 1e6;
+    TEST_ASSERT_TRUE(mct_systems[sphere()]->prepare(&scene, 0.001, &constants, &why) != MCT_OK);
+    TEST_ASSERT_EQUAL_STRING(
+        "parameters.fluid_viscosity: found a sphere that stops at once; allowed 1e18 times a step", why.text);
+}
+
 static void test_a_step_too_long_for_an_explicit_stepper_is_refused(void)
 {
     FOR_EACH_STEPPER (stepper, sphere(), mct_systems[sphere()]->effects) {
@@ -143,6 +156,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_closed_form_is_what_gauss_principle_gives_and_its_powers_add_up);
     RUN_TEST(test_equation_452_holds_as_corrected_and_not_as_printed);
+    RUN_TEST(test_a_sphere_that_stops_at_once_is_refused_in_a_sentence);
     RUN_TEST(test_a_step_too_long_for_an_explicit_stepper_is_refused);
     return UNITY_END();
 }

@@ -109,6 +109,15 @@ static void compare(const mct_system *system)
         expect("C v", (double)out.Cv[i], (double)motion->Cv[i], force_size[i], &worst_acceleration);
         expect("acceleration", (double)out.acceleration[i], (double)motion->acceleration[i],
                acceleration_size[i], &worst_acceleration);
+        double by_christoffel = 0;
+        for (int j = 0; j < n; j++) {
+            by_christoffel += (double)judgement.lagrange.C_alternative[i][j] * (double)v[j];
+        }
+        if (system->attitude == MCT_ATTITUDE_NONE && !system->is_timed &&
+            !(mct_scene_effects(&scene) & MCT_CLOCK)) {
+            expect("C v of eq. 229", by_christoffel, (double)motion->Cv[i], force_size[i],
+                   &worst_acceleration);
+        }
         work -= (double)judgement.couple[i] * (double)v[i];
         work_size += force_size[i] * fabs((double)v[i]);
     }

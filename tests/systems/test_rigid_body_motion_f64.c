@@ -265,6 +265,17 @@ static void test_both_descriptions_of_a_body_move_alike(void)
     TEST_ASSERT_TRUE(body_distance(listed, described) < 1e-12);
 }
 
+static void test_a_body_that_is_described_twice_is_refused_with_one_particle_as_well(void)
+{
+    static const char text[] = "[scene]\nsystem = \"rigid_body\"\n"
+                               "[parameters]\nparticles = [[1, 0, 0, 0.1]]\nmass = 2\n";
+    mct_scene scene;
+    mct_message why = {""};
+    TEST_ASSERT_TRUE(mct_scene_read(text, sizeof text - 1, "text", NULL, 0, &scene, &why) != MCT_OK);
+    TEST_ASSERT_TRUE_MESSAGE(strstr(why.text, "parameters.mass: found 2 kg beside 1 particle;") != NULL,
+                             why.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -272,5 +283,6 @@ int main(void)
     RUN_TEST(test_each_stepper_has_its_order_with_all_effects);
     RUN_TEST(test_a_free_body_turns_by_the_elliptic_functions_and_keeps_its_angular_momentum);
     RUN_TEST(test_both_descriptions_of_a_body_move_alike);
+    RUN_TEST(test_a_body_that_is_described_twice_is_refused_with_one_particle_as_well);
     return UNITY_END();
 }

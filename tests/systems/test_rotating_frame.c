@@ -332,6 +332,28 @@ static void test_the_euler_force_has_the_factor_m(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2, (double)out.acceleration[1]);
 }
 
+static void test_an_axis_that_stands_still_is_known_wherever_it_points(void)
+{
+    static const struct {
+        double velocity[3], acceleration[3];
+        bool stands_still;
+    } cases[] = {
+        {{1, 2, -2}, {0.5, 1, -1}, true},  {{1, 2, -2}, {-3, -6, 6}, true},  {{1, 2, -2}, {0, 0, 0}, true},
+        {{0, 0, 0}, {0.3, -2, 0.7}, true}, {{1, 2, -2}, {0.5, 1, 1}, false}, {{0, 0, 1}, {0, 1e-3, 0}, false},
+    };
+    const int system = system_called("rotating_frame");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        mct_scene scene;
+        mct_constants constants;
+        mct_scene_defaults(&scene, system);
+        memcpy(vector_of(&scene, "angular_velocity"), cases[i].velocity, sizeof cases[i].velocity);
+        memcpy(vector_of(&scene, "angular_acceleration"), cases[i].acceleration,
+               sizeof cases[i].acceleration);
+        TEST_ASSERT_EQUAL_INT(MCT_OK, mct_systems[system]->prepare(&scene, 0.001, &constants, NULL));
+        TEST_ASSERT_TRUE(constants.rotating_frame.has_fixed_axis == cases[i].stands_still);
+    }
+}
+
 static void test_what_is_wrong_is_refused_in_a_sentence(void)
 {
     static const struct {
@@ -364,6 +386,7 @@ int main(void)
     RUN_TEST(test_the_energy_changes_by_the_powers_of_the_effects);
     RUN_TEST(test_the_rate_of_the_rotation_vector_is_the_angular_velocity_about_a_fixed_axis_alone);
     RUN_TEST(test_the_euler_force_has_the_factor_m);
+    RUN_TEST(test_an_axis_that_stands_still_is_known_wherever_it_points);
     RUN_TEST(test_what_is_wrong_is_refused_in_a_sentence);
     return UNITY_END();
 }
