@@ -9,6 +9,8 @@ import pytest
 
 FLAGS = ["-std=c99", "-O1", "-ffp-contract=off", "-ffunction-sections", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion",
          "-Wshadow", "-Wdouble-promotion", "-Werror"]
+SANITIZE = os.environ.get("MCTAU_SANITIZE", "")
+FLAGS += ["--coverage"] if SANITIZE == "coverage" else [f"-fsanitize={SANITIZE}"] if SANITIZE else []
 LIBRARIES = {"float": "libmctau_f32.a", "double": "libmctau.a"}
 # What the ready scenes do not use.
 OTHERS = [
