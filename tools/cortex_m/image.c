@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "hal/records.h"
 #include "target.h"
 
 /* --- words in and out --- */
@@ -62,14 +63,42 @@ int image_fail(const char *why)
     return 1;
 }
 
-uint64_t image_hash(uint64_t hash, const void *data, size_t size)
+/* --- records --- */
+
+/* FNV-1a, by words. */
+static uint64_t hash_of(uint64_t hash, const void *data, size_t size)
 {
     for (size_t i = 0; i < size; i += sizeof(uint32_t)) {
         uint32_t word;
         memcpy(&word, (const char *)data + i, sizeof word);
-        hash = (hash ^ word) * UINT64_C(0x100000001b3); /* FNV-1a's prime */
+        hash = (hash ^ word) * UINT64_C(0x100000001b3);
     }
     return hash;
+}
+
+void image_records_open(image_records *records, int number)
+{
+    const mct_records_head head = mct_records_head_here();
+    char path[IMAGE_WORD];
+    records->hash = 0;
+    records->is_wanted = image_word(number, path) && path[0] != '-';
+    records->file = records->is_wanted ? mct_semihosting_open(path, true) : -1;
+    records->is_well = !records->is_wanted ||
+                       (records->file != -1 && mct_semihosting_append(records->file, &head, sizeof head));
+}
+
+void image_records_add(image_records *records, const mct_record *record)
+{
+    records->hash = hash_of(records->hash, record, sizeof *record);
+    if (records->is_wanted) {
+        records->is_well = records->is_well && mct_semihosting_append(records->file, record, sizeof *record);
+    }
+}
+
+bool image_records_close(image_records *records)
+{
+    const bool is_closed = records->file == -1 || mct_semihosting_close(records->file);
+    return records->is_well && is_closed;
 }
 
 /* --- instructions --- */

@@ -16,6 +16,13 @@ typedef struct {
     uint32_t least, most;
 } image_counts;
 
+/* Where a run's records go, if anywhere, and what they hash to. */
+typedef struct {
+    bool is_wanted, is_well; /* well: all has been taken so far */
+    int32_t file;
+    uint64_t hash;
+} image_records;
+
 /* Starts the timer and paints the stack; false when the timer does not count instructions. */
 bool image_begin(void);
 
@@ -34,8 +41,14 @@ void image_print(const char *name, const uint64_t *values, int count);
 /* What a run has come to: ticks, hash of all records, instructions, mode, faults, stack. */
 void image_report(const mct_loop *loop, const image_counts *counts, uint64_t hash);
 
-/* Hash of words, continued from `hash`: FNV-1a. */
-uint64_t image_hash(uint64_t hash, const void *data, size_t size);
+/* Opens the file that the command line's word of this number names; none or "-" for nowhere. */
+void image_records_open(image_records *records, int number);
+
+/* Adds a record, to the hash in any case. */
+void image_records_add(image_records *records, const mct_record *record);
+
+/* Closes the file; false when not all has arrived. */
+bool image_records_close(image_records *records);
 
 /* Says why, and gives the exit code. */
 int image_fail(const char *why);

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "hal/compiled.h"
-#include "hal/records.h"
 #include "hal/socketcan/can.h"
 #include "hal/socketcan/socket.h"
 #include "image.h"
@@ -39,19 +38,16 @@ int main(void)
     static mct_can can;
     static mct_can_socket socket;
     const mct_scene *scene = &mct_compiled_scene.scene;
-    const mct_records_head head = mct_records_head_here();
-    char interface[IMAGE_WORD], path[IMAGE_WORD];
+    char interface[IMAGE_WORD];
     image_counts counts = {0};
+    image_records records;
     mct_message why = {""};
-    uint64_t hash = 0;
     (void)image_begin(); /* nothing is counted here */
     if (!image_word(1, interface)) {
         return image_fail("no interface given");
     }
-    const bool records = image_word(2, path) && path[0] != '-';
     const uint64_t ticks = image_number(3, mct_compiled_ticks);
-    const int32_t file = records ? mct_semihosting_open(path, true) : -1;
-    bool written = !records || (file != -1 && mct_semihosting_append(file, &head, sizeof head));
+    image_records_open(&records, 2);
     watch_signals();
     loop = mct_compiled_loop;
     loop.hal = mct_can_hal(&can);
@@ -61,15 +57,14 @@ int main(void)
         loop.hal.ops->open(loop.hal.context, &why) != MCT_OK) {
         return image_fail(why.text);
     }
-    while (loop.tick < ticks && written && !stopped) {
+    while (loop.tick < ticks && records.is_well && !stopped) {
         image_tick(&loop, &counts);
-        hash = image_hash(hash, &loop.record, sizeof loop.record);
-        written = !records || mct_semihosting_append(file, &loop.record, sizeof loop.record);
+        image_records_add(&records, &loop.record);
     }
     loop.hal.ops->close(loop.hal.context);
-    if (!written || (records && !mct_semihosting_close(file))) {
+    if (!image_records_close(&records)) {
         return image_fail("the records could not be written");
     }
-    image_report(&loop, &counts, hash);
+    image_report(&loop, &counts, records.hash);
     return 0;
 }
